@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// One key of a table: its name, what kind of value it takes, the legal range, and what it means. Readers check input
+// against such tables, so that a key is described once, beside the code that uses its value.
+#pragma once
+
+#include <limits>
+#include <string_view>
+
+namespace sagitta::numerics {
+
+enum class ValueKind {
+  number,    // 7.72; .inf where the range allows it
+  flag,      // true | false
+  text,      // one of `choices` where those are given, else any text
+  file,      // the name of a file
+  vector3,   // [x, y, z]
+  indexed,   // {index: value, ...} or a list that counts from the first index
+  medium,    // a name or {index: ...} or {nd: ..., vd: ...}
+  mapping,   // has a table of keys of its own
+  list       // a list with a checker of its own
+};
+
+// The legal values of a number. Checks are written so that NaN fails.
+struct Range {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool open = false;       // the ends low and high are themselves illegal
+  bool zero = true;        // zero is legal
+  bool infinite = false;   // +-infinity is legal (where low and high allow it)
+
+  constexpr bool contains(double v) const {
+    const bool inside = open ? (v > low && v < high) : (v >= low && v <= high);
+    const bool is_infinite = v == std::numeric_limits<double>::infinity() || v == -std::numeric_limits<double>::infinity();
+    if (is_infinite) return infinite && v >= low && v <= high;
+    return inside && (zero || v != 0);
+  }
+};
+inline constexpr Range any_number{};
+inline constexpr Range positive{0, std::numeric_limits<double>::infinity(), true};
+inline constexpr Range not_negative{0};
+inline constexpr Range nonzero_or_infinite{.zero = false, .infinite = true};
+
+struct Key {
+  std::string_view name;
+  ValueKind kind = ValueKind::number;
+  std::string_view meaning;          // one line for the user, without a full stop
+  bool required = false;
+  Range range = any_number;          // of a number, and of each element of a vector
+  double fallback = 0;               // of a number that is not given
+  std::string_view choices = {};     // of a text: "osa|noll|fringe"; the first is the default unless required
+};
+
+}  // namespace sagitta::numerics

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a reader has to say about a file: findings with a place, all of them in one run. Input errors are values, never
+// exceptions, and no reader prints.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace sagitta::prescription {
+
+// Lines and columns count from 1; line 0 means the file as a whole (printed as 1:1). Columns count bytes.
+struct Place {
+  std::string file;
+  int line = 0;
+  int column = 0;
+};
+
+enum class Severity { error, warning, note };
+
+struct Finding {
+  Place place;
+  Severity severity = Severity::error;
+  std::string what;   // what is wrong, with the value and the legal range
+  std::string hint;   // what to do; empty where there is nothing to add
+};
+
+class Findings {
+ public:
+  void error(Place place, std::string what, std::string hint = {});
+  void warning(Place place, std::string what, std::string hint = {});
+  void note(Place place, std::string what, std::string hint = {});
+
+  bool has_errors() const { return error_count_ > 0; }
+  int error_count() const { return error_count_; }
+  const std::vector<Finding>& all() const { return findings_; }
+
+ private:
+  std::vector<Finding> findings_;
+  int error_count_ = 0;
+};
+
+// "file:line:column: error: what" and, where there is a hint, a second line "  hint: ...".
+std::string format(const Finding& finding);
+
+// The candidate nearest to `given` by edit distance, or "" where none is near: for "did you mean ...".
+std::string nearest_name(const std::string& given, const std::vector<std::string>& candidates);
+
+// At most 40 bytes of somebody's text, control characters and broken UTF-8 made harmless, "..." where it was cut.
+std::string excerpt(const std::string& text);
+
+}  // namespace sagitta::prescription

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the user wrote, checked: the prescription as values with their places. Units are the file's (mm, nm, degrees).
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lib/medium/medium.h"
+#include "lib/numerics/vec3.h"
+#include "lib/prescription/diagnostics.h"
+#include "lib/prescription/parameters.h"
+#include "lib/prescription/point_cloud.h"
+
+namespace sagitta::prescription {
+
+enum class ApertureKind { entrance_pupil_diameter_mm, stop_diameter_mm, image_f_number, object_na };
+struct Aperture {
+  ApertureKind kind = ApertureKind::entrance_pupil_diameter_mm;
+  double value = 0;
+  Place place;
+};
+
+enum class FieldKind { angles_deg, object_heights_mm };
+struct Fields {
+  FieldKind kind = FieldKind::angles_deg;
+  struct Point {
+    double x = 0, y = 0;
+  };
+  std::vector<Point> points{{0, 0}};  // the default: on the axis
+  Place place;
+};
+
+struct Object {
+  double distance_mm = std::numeric_limits<double>::infinity();  // positive: a real object before surface 1
+  medium::Medium medium = medium::air();
+  Place place;
+};
+
+struct Shape {
+  std::string kind = "plane";
+  Parameters parameters;
+  std::shared_ptr<const PointCloud> cloud;  // for shapes made of points
+  Place place;
+};
+
+struct Surface {
+  std::string name;  // "" where none was given
+  Shape shape;
+  bool stop = false;
+  double thickness_mm = 0;
+  std::optional<medium::Medium> medium;  // what follows; none: a mirror
+  double semi_diameter_mm = std::numeric_limits<double>::infinity();
+  double inner_semi_diameter_mm = 0;
+  numerics::Vec3<double> decenter_mm{}, tilt_deg{};
+  Place place;
+
+  bool is_mirror() const { return !medium.has_value(); }
+};
+
+struct Model {
+  std::string file;
+  std::string name, source;
+  std::vector<double> wavelengths_nm;
+  std::optional<double> primary_nm;  // none: the first wavelength
+  Aperture aperture;
+  Fields fields;
+  Object object;
+  std::vector<Surface> surfaces;  // the last one is the image surface
+  Place place;
+
+  double primary_wavelength_nm() const { return primary_nm ? *primary_nm : wavelengths_nm.front(); }
+};
+
+}  // namespace sagitta::prescription

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// What every shape answers: its sag, the gradient of its sag, and where a ray meets it. The shapes' contract:
+//
+//   struct S {
+//     static constexpr std::string_view kind;               // the key of the prescription, e.g. "conic"
+//     static constexpr std::array keys;                     // its keys (numerics/key.h)
+//     template <class P, class A> static S from(const P& parameters, A& arena);   // from checked parameters
+//     template <class T> T sag(T x, T y) const;             // mm; NaN outside the domain
+//     template <class T> Gradient<T> gradient(T x, T y) const;
+//     template <class T> Crossing<T> meet(Vec3<T> p, Vec3<T> d) const;
+//     double vertex_curvature() const;                      // y-z second derivative of the sag at the local origin
+//   };
+//
+// T is double in the tracer, a 50-digit type in the rounding oracle. The parameters are doubles in both: they are
+// taken as exact. Everything is in the surface's local frame, in mm.
+#pragma once
+
+#include <limits>
+
+#include "lib/numerics/vec3.h"
+#include "lib/surface/status.h"
+
+namespace sagitta::surface {
+
+using numerics::Vec3;
+
+// The gradient of the sag, (dz/dx, dz/dy).
+template <class T>
+struct Gradient {
+  T x, y;
+};
+
+// Where the line p + t d (|d| = 1) meets a surface.
+template <class T>
+struct Crossing {
+  T path;           // t in mm, of either sign; NaN unless status is ok
+  Vec3<T> normal;   // not normalised; its z component is positive (the side that light enters when it travels to +z is
+                    // the side the normal does not point to)
+  T along;          // d . normal, from the cheapest accurate source; its sign tells the side the ray comes from
+  Status status = Status::ok;
+};
+
+template <class T>
+constexpr T not_a_number() {
+  return std::numeric_limits<T>::quiet_NaN();
+}
+
+template <class T>
+constexpr Crossing<T> no_crossing(Status status) {
+  return {not_a_number<T>(), {not_a_number<T>(), not_a_number<T>(), not_a_number<T>()}, not_a_number<T>(), status};
+}
+
+}  // namespace sagitta::surface
