@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// A YAML document as a plain tree with the place of every node, read strictly: bounded size, bounded depth, repeated
+// keys found, aliases bounded. Everything that yaml-cpp would accept in silence or choke on is stopped here, so the
+// readers above see only trees they can walk.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "lib/prescription/diagnostics.h"
+
+namespace sagitta::prescription {
+
+struct YamlNode {
+  enum class Kind { null, scalar, sequence, mapping };
+  using Pointer = std::shared_ptr<const YamlNode>;
+  struct Entry {
+    std::string key;
+    Place key_place;
+    Pointer value;  // never null; an empty value is a node of Kind::null
+  };
+
+  Kind kind = Kind::null;
+  Place place;
+  std::string text;              // of a scalar
+  bool quoted = false;           // a quoted scalar is a text even where it looks like a number
+  std::vector<Pointer> items;    // of a sequence
+  std::vector<Entry> entries;    // of a mapping, in the order of the file; repeated keys are reported and kept once
+
+  // The value of a key of a mapping; null pointer where there is none.
+  Pointer find(std::string_view key) const;
+};
+
+// Limits: 64 MiB of text, nesting of 100, 1e6 nodes with every alias expanded. Beyond them, or for text that is not
+// YAML, an error is added and the result is null. A missing, unreadable or empty file is an error too.
+YamlNode::Pointer read_yaml(const std::string& file, Findings& findings);
+
+// A number by std::from_chars: 1.5, -3e-4, +2, .5, .inf, -.inf, .nan; independent of the locale; the whole text must
+// be used. False: not a number.
+struct ParsedNumber {
+  bool ok = false;
+  double value = 0;
+};
+ParsedNumber parse_number(std::string_view text);
+
+}  // namespace sagitta::prescription
