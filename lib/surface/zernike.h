@@ -56,7 +56,7 @@ struct Zernike {
   const Group* groups = nullptr;
   int group_count = 0;
   const Row* rows = nullptr;
-  double coefficient_sum = 0;  // sum |C_j norm_j|: bounds every rounding error of the sum
+  double coefficient_sum = 0;  // sum |C_j norm_j|, the size of the terms inside r0
 
   template <class Parameters, class Arena>
   static Zernike from(const Parameters& given, Arena& arena) {
@@ -94,7 +94,7 @@ struct Zernike {
   Height<T> height(const T& x, const T& y) const {
     using std::abs;
     const T X = x * T(per_radius), Y = y * T(per_radius), u = X * X + Y * Y;
-    T z(0), z_X(0), z_Y(0);
+    T z(0), z_X(0), z_Y(0), size(coefficient_sum);
     T re(1), im(0), re_before(0), im_before(0);  // h_m and h_(m-1)
     int m = 0;
     for (int g = 0; g < group_count; ++g) {
@@ -124,13 +124,14 @@ struct Zernike {
       }
       const T radial_u = re * cosine_u + im * sine_u;
       z += re * cosine + im * sine;                                                          // (2)
+      size += abs(re * cosine) + abs(im * sine);
       z_X += T(2) * X * radial_u + T(m) * (re_before * cosine + im_before * sine);           // (3)
       z_Y += T(2) * Y * radial_u + T(m) * (re_before * sine - im_before * cosine);
     }
     const T base_z = base.sag(x, y);
     const Gradient<T> slope = base.gradient(x, y);
     return {base_z + z, slope.x + z_X * T(per_radius), slope.y + z_Y * T(per_radius),
-            abs(base_z) + abs(z) + T(coefficient_sum)};
+            abs(base_z) + size};
   }
 
   template <class T>
