@@ -36,6 +36,27 @@ double round_up(double value) {
   return 10 * decade;
 }
 
+bool is_made_of_data(const surface::Shape& shape) {
+  return std::visit([]<class S>(const S&) { return requires { S::is_made_of_data; }; }, shape);
+}
+
+std::vector<Coverage> coverage_of(const scene::Scene& scene, const trace::StatusCounts& rays) {
+  std::vector<Coverage> result;
+  std::int64_t reaching = rays.total();
+  for (int number = 1; number <= scene.surface_count(); ++number) {
+    std::int64_t lost = 0, outside = 0;
+    for (const auto& [ended, count] : rays.endings) {
+      if (ended / 8 != number) continue;
+      lost += count;
+      if (static_cast<surface::Status>(ended % 8) == surface::Status::outside_data) outside = count;
+    }
+    if (is_made_of_data(scene.surface(number).shape))
+      result.push_back({number, static_cast<double>(reaching - outside) / static_cast<double>(reaching)});
+    reaching -= lost;
+  }
+  return result;
+}
+
 // All spots at one scale. A perfect image still has a size to draw: a nanometre.
 void draw_spots(const scene::Scene& scene, const JobRequest& request, const std::vector<trace::RayBatch>& batches,
                 std::vector<JobResult>& results) {
@@ -68,7 +89,9 @@ std::vector<JobResult> run_job(const scene::Scene& scene, const JobRequest& requ
   for (std::size_t field = 0; field < scene.fields.size(); ++field)
     for (std::size_t w = 0; w < scene.wavelengths.size(); ++w) {
       const scene::Wavelength& wavelength = scene.wavelengths[w];
-      JobResult result{field, w, {}, {}, {}, {}};
+      JobResult result;
+      result.field = field;
+      result.wavelength = w;
       if (request.want_wavefront) {
         result.wavefront = wavefront(scene, wavelength, scene.fields[field], wavefront_request);
         if (result.wavefront->wavefront) result.rays = result.wavefront->wavefront->rays;
@@ -80,6 +103,7 @@ std::vector<JobResult> run_job(const scene::Scene& scene, const JobRequest& requ
         result.rays = result.spot->rays;
         batches.push_back(std::move(rays));
       }
+      result.coverage = coverage_of(scene, result.rays);
       results.push_back(std::move(result));
       if (progress) progress(static_cast<double>(results.size()) / static_cast<double>(result_count));
     }

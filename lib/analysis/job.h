@@ -24,9 +24,16 @@ struct JobRequest {
   int thread_count = 0;            // 0: as many as the machine runs
 };
 
+// The share of the rays reaching a surface that is made of data which land inside the data.
+struct Coverage {
+  int surface_number = 0;
+  double share = 0;  // NaN where no ray reached it
+};
+
 struct JobResult {
   std::size_t field = 0, wavelength = 0;   // from 0
   trace::StatusCounts rays;                // of the spot's rays, or of the wavefront's where only that is asked for
+  std::vector<Coverage> coverage;          // of every surface made of data, by the same rays
   std::optional<Spot> spot;
   std::optional<SpotImage> spot_image;     // one pixel size for the whole job; centred, for all wavelengths of a field,
                                            // on the centroid of the first one that has rays

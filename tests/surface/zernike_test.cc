@@ -139,11 +139,12 @@ TEST(ZernikeSurface, gradient_agrees_with_50_digit_differences) {
   }
 }
 
-TEST(ZernikeSurface, without_terms_it_is_the_conic_bit_for_bit) {
+TEST(ZernikeSurface, without_terms_it_is_the_conic) {
   numerics::Arena arena;
   const Zernike surface = make({.radius = 7.72, .K = -0.26, .r0 = 3}, arena);
   const Vec3<double> p{1, 0.5, -2}, d = normalized(Vec3<double>{0.1, 0.05, 1});
-  EXPECT_EQ(surface.meet(p, d).path, surface.base.meet(p, d).path);
+  // one Newton step of a few roundings of the distance (2.3 mm) may be left
+  EXPECT_NEAR(surface.meet(p, d).path, surface.base.meet(p, d).path, 4 * 2.3e-16 * 2.3);
 }
 
 // Z_4 (osa) = sqrt(3) (2 rho^2 - 1): a defocus term on a plane is the paraboloid of the same curvature, moved.
