@@ -118,7 +118,8 @@ class MaterialFile {
     const std::optional<std::vector<double>> range = numbers(range_text);
     const std::optional<std::vector<double>> coefficients = numbers(coefficients_text);
     if (range && !(range->size() == 2 && (*range)[0] > 0 && (*range)[0] <= (*range)[1]))
-      findings_.error(range_text->place, fmt::format("the range '{}' is not two wavelengths in um, 0 < shortest <= longest", excerpt(range_text->text)),
+      findings_.error(range_text->place,
+                      fmt::format("the range '{}' is not two wavelengths in um, 0 < shortest <= longest", excerpt(range_text->text)),
                       range->size() == 2 && (*range)[0] > (*range)[1] ? "swap them" : "");
     if (coefficients && !formula->accepts(coefficients->size()))
       findings_.error(coefficients_text->place,
@@ -200,7 +201,7 @@ class MaterialFile {
       }
       if (columns.size() != column_count || values.size() != column_count)
         findings_.error(place, fmt::format("'{}' is not a row of {} finite numbers", excerpt(text), column_count),
-                        column_count == 3 ? "um, n, k; each row on a line of its own below `data: |`" : "um, n; each row on a line of its own below `data: |`");
+                        fmt::format("{}; each row on a line of its own below `data: |`", column_count == 3 ? "um, n, k" : "um, n"));
       else if (!(values[0] > 0 && values[1] > 0))
         findings_.error(place, fmt::format("'{}': the wavelength and n must be positive", excerpt(text)));
       else
