@@ -7,7 +7,6 @@
 #include <memory>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "lib/prescription/diagnostics.h"
@@ -34,8 +33,9 @@ struct YamlNode {
   Pointer find(std::string_view key) const;
 };
 
-// Limits: 64 MiB of text, nesting of 100, 1e6 nodes with every alias expanded. Beyond them, or for text that is not
-// YAML, an error is added and the result is null. A missing, unreadable or empty file is an error too.
+// Limits: 1 MiB of text, nesting of 100, 200,000 nodes with every alias expanded. Beyond them, or for text that is not
+// YAML (UTF-8, without tags), an error is added and the result is null. A missing, unreadable or empty file is an error
+// too.
 YamlNode::Pointer read_yaml(const std::string& file, Findings& findings);
 
 // A number by std::from_chars: 1.5, -3e-4, +2, .5, .inf, -.inf, .nan; independent of the locale; the whole text must
