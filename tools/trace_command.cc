@@ -33,8 +33,8 @@ output::Report make_report(const prescription::Model& model, const scene::Compil
 
 // Says what could not be written; true if it was.
 bool written(const output::WriteResult& result) {
-  if (!result) fmt::print(stderr, "sagitta trace: {}\n", result.error);
-  return bool(result);
+  if (!result.ok()) fmt::print(stderr, "sagitta trace: {}\n", result.error);
+  return result.ok();
 }
 
 bool write_image(const std::filesystem::path& base, std::vector<output::ExrPart> parts, const output::Figure& figure) {
@@ -80,7 +80,7 @@ int trace_command(const TraceOptions& options) {
   if (request.want_spot) all_written &= write_image(folder / "spot", spot_parts(report), spot_figure(report));
   if (request.want_wavefront) all_written &= write_image(folder / "wavefront", wavefront_parts(report), wavefront_figure(report));
   const std::string summary = summary_json(report);
-  all_written &= written(output::write_file(folder / "summary.json", summary));
+  all_written &= written(output::write_file((folder / "summary.json").string(), summary));
   fmt::print("{}", options.json ? summary : summary_text(report));
   if (!all_written) return 1;
 
