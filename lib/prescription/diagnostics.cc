@@ -51,17 +51,21 @@ bool starts_with_control(std::string_view text) {
   return !text.empty() && (first < 0x20 || first == 0x7F || (first == 0xC2 && byte(text, 1) >= 0x80 && byte(text, 1) < 0xA0));
 }
 
+void Findings::add(Finding finding) {
+  if (finding.severity == Severity::error) ++error_count_;
+  findings_.push_back(std::move(finding));
+}
+
 void Findings::error(Place place, std::string what, std::string hint) {
-  findings_.push_back({std::move(place), Severity::error, std::move(what), std::move(hint)});
-  ++error_count_;
+  add({std::move(place), Severity::error, std::move(what), std::move(hint)});
 }
 
 void Findings::warning(Place place, std::string what, std::string hint) {
-  findings_.push_back({std::move(place), Severity::warning, std::move(what), std::move(hint)});
+  add({std::move(place), Severity::warning, std::move(what), std::move(hint)});
 }
 
 void Findings::note(Place place, std::string what, std::string hint) {
-  findings_.push_back({std::move(place), Severity::note, std::move(what), std::move(hint)});
+  add({std::move(place), Severity::note, std::move(what), std::move(hint)});
 }
 
 std::string format(const Finding& finding) {
