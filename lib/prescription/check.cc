@@ -25,9 +25,9 @@ void check_medium(const MediumUse& use, const std::vector<double>& wavelengths_n
   }
   // Ranges are shown with 9 digits: 0.31 um times 1000 need not be 310.
   if (!outside.empty())
-    findings.error(use.place, fmt::format("{} is valid from {:.9g} to {:.9g} nm, not at {} nm", use.medium.name,
-                                          use.medium.shortest_um * 1000, use.medium.longest_um * 1000,
-                                          fmt::join(outside, ", ")));
+    findings.error(use.place,
+                   fmt::format("{} is valid from {:.9g} to {:.9g} nm, not at {} nm", use.medium.name,
+                               use.medium.shortest_um * 1000, use.medium.longest_um * 1000, fmt::join(outside, ", ")));
   if (!without_index.empty())
     findings.error(use.place, fmt::format("the index of {} is not positive at {} nm", use.medium.name,
                                           fmt::join(without_index, ", ")));
@@ -47,8 +47,8 @@ void check_aperture(const Model& model, Findings& findings) {
   if (!model.object.medium.covers(wavelength_um)) return;
   const double index = model.object.medium.index(wavelength_um);
   if (!(aperture.value < index))
-    findings.error(aperture.place, fmt::format("object_na must be less than the object's index, {}, not '{}'", index,
-                                               aperture.value));
+    findings.error(aperture.place,
+                   fmt::format("object_na must be less than the object's index, {}, not '{}'", index, aperture.value));
 }
 
 }  // namespace
@@ -58,7 +58,8 @@ void check_model(const Model& model, const std::vector<MediumUse>& media, Findin
   for (const MediumUse& use : media) check_medium(use, wavelengths_nm, findings);
   check_aperture(model, findings);
   if (model.fields.kind == FieldKind::object_heights_mm && std::isinf(model.object.distance_mm))
-    findings.error(model.fields.place, "object_heights_mm needs a finite object", "give object: {distance_mm: ...}, or angles_deg");
+    findings.error(model.fields.place, "object_heights_mm needs a finite object",
+                   "give object: {distance_mm: ...}, or angles_deg");
 }
 
 }  // namespace sagitta::prescription

@@ -20,8 +20,8 @@ enum class Severity { error, warning, note };
 struct Finding {
   Place place;
   Severity severity = Severity::error;
-  std::string what;   // what is wrong, with the value and the legal range
-  std::string hint;   // what to do; empty where there is nothing to add
+  std::string what;  // what is wrong, with the value and the legal range
+  std::string hint;  // what to do; empty where there is nothing to add
 };
 
 class Findings {

@@ -75,23 +75,25 @@ inline constexpr std::array object_keys{
                   .meaning = "from the object to surface 1; negative for a virtual object",
                   .range = {.low = std::numeric_limits<double>::lowest(), .zero = false, .infinite = true},
                   .fallback = std::numeric_limits<double>::infinity()},
-    numerics::Key{.name = "medium", .kind = numerics::ValueKind::medium, .meaning = "medium of the object; air unless given"}};
+    numerics::Key{
+        .name = "medium", .kind = numerics::ValueKind::medium, .meaning = "medium of the object; air unless given"}};
 
 // The keys of every surface; exactly one shape may stand beside them (none: a plane).
 inline constexpr std::array surface_keys{
     numerics::Key{.name = "name", .kind = numerics::ValueKind::text, .meaning = "name of the surface"},
-    numerics::Key{.name = "stop", .kind = numerics::ValueKind::flag, .meaning = "true on exactly one surface: the aperture stop"},
+    numerics::Key{
+        .name = "stop", .kind = numerics::ValueKind::flag, .meaning = "true on exactly one surface: the aperture stop"},
     numerics::Key{.name = "thickness_mm", .meaning = "to the next vertex; on all surfaces but the last"},
-    numerics::Key{.name = "medium",
-                  .kind = numerics::ValueKind::medium,
-                  .meaning = "what follows the surface: a name, {index: ...}, {nd: ..., vd: ...} or mirror; air unless given"},
+    numerics::Key{
+        .name = "medium",
+        .kind = numerics::ValueKind::medium,
+        .meaning = "what follows the surface: a name, {index: ...}, {nd: ..., vd: ...} or mirror; air unless given"},
     numerics::Key{.name = "semi_diameter_mm",
                   .meaning = "rays beyond it are clipped",
                   .range = numerics::positive,
                   .fallback = std::numeric_limits<double>::infinity()},
-    numerics::Key{.name = "inner_semi_diameter_mm",
-                  .meaning = "rays inside it are clipped",
-                  .range = numerics::not_negative},
+    numerics::Key{
+        .name = "inner_semi_diameter_mm", .meaning = "rays inside it are clipped", .range = numerics::not_negative},
     numerics::Key{.name = "decenter_mm",
                   .kind = numerics::ValueKind::vector3,
                   .meaning = "[x, y, z] by which the vertex is moved off its place on the axis"},

@@ -21,14 +21,21 @@ medium::Medium MediumReader::read_name(const YamlNode& node) {
     return medium::air();
   }
   if (!node.quoted && parse_number(node.text).ok) {
-    findings_.error(node.place, fmt::format("medium must be a name or a mapping, not the number '{}'", excerpt(node.text)),
+    findings_.error(node.place,
+                    fmt::format("medium must be a name or a mapping, not the number '{}'", excerpt(node.text)),
                     fmt::format("write {{index: {}}}", excerpt(node.text)));
     return medium::air();
   }
-  const auto known = known_.find(node.text);
-  if (known != known_.end()) return known->second;
+  if (const auto known = known_.find(node.text); known != known_.end()) return known->second;
+  if (const auto failed = failed_.find(node.text); failed != failed_.end()) {
+    findings_.error(node.place, fmt::format("medium '{}' cannot be read", excerpt(node.text)),
+                    fmt::format("see line {}", failed->second));
+    return medium::air();
+  }
   const auto found = find_material(node.text, node.place, findings_);
-  return found ? known_.emplace(node.text, *found).first->second : medium::air();
+  if (found) return known_.emplace(node.text, *found).first->second;
+  failed_.emplace(node.text, node.place.line);
+  return medium::air();
 }
 
 medium::Medium MediumReader::read_inline(const YamlNode& node) {

@@ -32,7 +32,8 @@ class MediumReader {
   medium::Medium read_inline(const YamlNode& node);
 
   Findings& findings_;
-  std::map<std::string, medium::Medium> known_;  // a file is read once
+  std::map<std::string, medium::Medium> known_;  // a file is read once,
+  std::map<std::string, int> failed_;            // and faults in it are told once, for the use on that line
   std::vector<MediumUse> uses_;
 };
 

@@ -25,13 +25,15 @@ constexpr int most_errors = 100;
 // The place of a key in its table, which is the enumerator's value.
 template <class Kind>
 Kind kind_of(const std::string& key, KeyTable table) {
-  const auto found = std::find_if(table.begin(), table.end(), [&](const numerics::Key& one) { return one.name == key; });
+  const auto found =
+      std::find_if(table.begin(), table.end(), [&](const numerics::Key& one) { return one.name == key; });
   return static_cast<Kind>(found - table.begin());
 }
 
 // A list that is not empty; its items are read by read_item(item).
 template <class ReadItem>
-void read_list(const YamlNode& node, const std::string& label, const std::string& items, Findings& findings, ReadItem&& read_item) {
+void read_list(const YamlNode& node, const std::string& label, const std::string& items, Findings& findings,
+               ReadItem&& read_item) {
   if (node.kind != YamlNode::Kind::sequence || node.items.empty())
     refuse(node, label, "a list of " + items, findings);
   else
@@ -58,7 +60,8 @@ Aperture read_aperture(const YamlNode& node, Findings& findings) {
   Aperture aperture;
   if (!given) return aperture;
   // A value that is not legal is reported here, and gives no further finding: 0 is less than any index.
-  aperture = {kind_of<ApertureKind>(given->key, aperture_keys), section.number(given->key).value_or(0), given->value->place};
+  aperture = {kind_of<ApertureKind>(given->key, aperture_keys), section.number(given->key).value_or(0),
+              given->value->place};
   return aperture;
 }
 

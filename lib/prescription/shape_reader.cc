@@ -25,8 +25,12 @@ void read_value(const Section& section, const Key& key, Parameters& parameters) 
   const YamlNode* node = section.find(key.name);
   if (node) parameters.places[name] = node->place;
   switch (key.kind) {
-    case ValueKind::number: parameters.numbers[name] = section.number(key.name).value_or(key.fallback); break;
-    case ValueKind::flag: parameters.numbers[name] = section.flag(key.name).value_or(key.fallback != 0); break;
+    case ValueKind::number:
+      parameters.numbers[name] = section.number(key.name).value_or(key.fallback);
+      break;
+    case ValueKind::flag:
+      parameters.numbers[name] = section.flag(key.name).value_or(key.fallback != 0);
+      break;
     case ValueKind::text:
     case ValueKind::file:
       if (const auto text = section.text(key.name))
@@ -42,7 +46,8 @@ void read_value(const Section& section, const Key& key, Parameters& parameters) 
     case ValueKind::vector3:
     case ValueKind::medium:
     case ValueKind::mapping:
-    case ValueKind::list: break;  // no shape has such a key; Parameters could not hold it
+    case ValueKind::list:
+      break;  // no shape has such a key; Parameters could not hold it
   }
 }
 
@@ -51,7 +56,8 @@ std::shared_ptr<const PointCloud> read_points(const std::string& key, const std:
                                               const Parameters& parameters, Findings& findings) {
   const auto name = parameters.texts.find(key);
   const auto format = parameters.texts.find("format"), axes = parameters.texts.find("axes");
-  if (name == parameters.texts.end() || format == parameters.texts.end() || axes == parameters.texts.end()) return nullptr;
+  if (name == parameters.texts.end() || format == parameters.texts.end() || axes == parameters.texts.end())
+    return nullptr;
   const Place& place = parameters.places.find(key)->second;
   const bool osa_axes = axes->second == "osa";
   if (osa_axes && format->second != "xyz") {
@@ -79,7 +85,8 @@ Shape read_shape(const ShapeKind& kind, const YamlNode& node, const std::string&
   Shape shape{.kind = std::string(kind.name), .parameters = {}, .cloud = nullptr, .place = node.place};
   for (const Key& key : kind.keys) read_value(section, key, shape.parameters);
   for (const Key& key : kind.keys)
-    if (key.kind == ValueKind::file) shape.cloud = read_points(std::string(key.name), folder, shape.parameters, findings);
+    if (key.kind == ValueKind::file)
+      shape.cloud = read_points(std::string(key.name), folder, shape.parameters, findings);
   return shape;
 }
 

@@ -55,11 +55,14 @@ void check_thickness(const Section& section, const Surface& surface, bool is_las
     findings.error(section.place(), fmt::format("missing key 'thickness_mm' in {}", section.owner()),
                    "every surface but the last has one");
   if (is_last && surface.thickness_mm != 0)
-    findings.error(given->place, fmt::format("thickness_mm of the last surface must be 0 or left out, not '{}'", excerpt(given->text)),
-                   "the last surface is the image surface: nothing follows it");
+    findings.error(
+        given->place,
+        fmt::format("thickness_mm of the last surface must be 0 or left out, not '{}'", excerpt(given->text)),
+        "the last surface is the image surface: nothing follows it");
 }
 
-Surface read_surface(const Section& section, bool is_last, const std::string& folder, MediumReader& media, Findings& findings) {
+Surface read_surface(const Section& section, bool is_last, const std::string& folder, MediumReader& media,
+                     Findings& findings) {
   Surface surface;
   surface.place = section.place();
   surface.name = section.text("name").value_or("");
@@ -82,7 +85,8 @@ Surface read_surface(const Section& section, bool is_last, const std::string& fo
 
 }  // namespace
 
-std::vector<Surface> read_surfaces(const YamlNode& list, const std::string& folder, MediumReader& media, Findings& findings) {
+std::vector<Surface> read_surfaces(const YamlNode& list, const std::string& folder, MediumReader& media,
+                                   Findings& findings) {
   std::vector<Surface> surfaces;
   if (list.kind != YamlNode::Kind::sequence || list.items.size() < 2) {
     refuse(list, "surfaces", "a list of at least 2, the last one being the image surface", findings);
@@ -93,17 +97,21 @@ std::vector<Surface> read_surfaces(const YamlNode& list, const std::string& fold
     Place place;
   };
   std::vector<Stop> stops;
+  bool all_stops_known = true;
   for (std::size_t number = 1; number <= list.items.size(); ++number) {
     const YamlNode& node = *list.items[number - 1];
     const Section section(node, fmt::format("surface {}", number), surface_and_shape_keys(), findings);
+    const YamlNode* stop = section.find("stop");
+    all_stops_known = all_stops_known && node.kind == YamlNode::Kind::mapping &&
+                      (!stop || stop->text == "true" || stop->text == "false");
     if (node.kind != YamlNode::Kind::mapping) continue;
     surfaces.push_back(read_surface(section, number == list.items.size(), folder, media, findings));
-    if (surfaces.back().stop) stops.push_back({number, section.find("stop")->place});
+    if (surfaces.back().stop) stops.push_back({number, stop->place});
   }
-  if (stops.empty()) findings.error(list.place, "no surface is the stop", "give exactly one surface 'stop: true'");
+  if (stops.empty() && all_stops_known) findings.error(list.place, "no surface is the stop", "give exactly one surface 'stop: true'");
   if (stops.size() > 1)
-    for (const Stop& stop : stops)
-      findings.error(stop.place, fmt::format("surface {} is one of {} stops", stop.number, stops.size()),
+    for (const Stop& one : stops)
+      findings.error(one.place, fmt::format("surface {} is one of {} stops", one.number, stops.size()),
                      "exactly one surface is the stop");
   return surfaces;
 }

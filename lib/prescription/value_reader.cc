@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <limits>
 #include <map>
 
@@ -22,6 +23,7 @@ std::string in_words(const numerics::Range& range) {
   if (from_below && to_above) {
     words += range.open ? " between " : " from ";
     words += fmt::format("{} {} {}", range.low, range.open ? "and" : "to", range.high);
+    if (range.open) words += ", both excluded";
   } else if (from_below) {
     words += fmt::format(" {} {}", range.open ? "greater than" : "of at least", range.low);
   } else if (to_above) {
@@ -35,12 +37,16 @@ std::string in_words(const numerics::Range& range) {
 // What stands in the file, in words.
 std::string shown(const YamlNode& node) {
   switch (node.kind) {
-    case YamlNode::Kind::null: return "empty";
-    case YamlNode::Kind::sequence: return fmt::format("a list of {}", node.items.size());
-    case YamlNode::Kind::mapping: return "a mapping";
-    case YamlNode::Kind::scalar: break;
+    case YamlNode::Kind::null:
+      return "empty";
+    case YamlNode::Kind::sequence:
+      return fmt::format("a list of {}", node.items.size());
+    case YamlNode::Kind::mapping:
+      return "a mapping";
+    case YamlNode::Kind::scalar:
+      break;
   }
-  return node.quoted ? "the text '" + excerpt(node.text) + "'" : "'" + excerpt(node.text) + "'";
+  return fmt::format("{}'{}'", node.quoted ? "the text " : "", excerpt(node.text));
 }
 
 // How to turn this text into a number, for the usual slips; empty where it is none of them.
@@ -90,7 +96,9 @@ std::optional<double> read_number(const YamlNode& node, const std::string& label
   const ParsedNumber parsed = is_plain(node) ? parse_number(node.text) : ParsedNumber{};
   if (parsed.ok && range.contains(parsed.value)) return parsed.value;
   findings.error(node.place, fmt::format("{} must be {}, not {}", label, in_words(range), shown(node)),
-                 parsed.ok ? "" : number_hint(node));
+                 !parsed.ok                   ? number_hint(node)
+                 : std::isinf(parsed.value) ? "it must be finite"
+                                              : "");
   return std::nullopt;
 }
 
@@ -108,7 +116,8 @@ std::optional<std::string> read_text(const YamlNode& node, const std::string& la
       return std::nullopt;
     }
     std::string text = node.text;
-    std::replace_if(text.begin(), text.end(), [](char c) { return c == '\n' || c == '\t'; }, ' ');
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return c == '\n' || c == '\t'; }, ' ');
     text.erase(text.find_last_not_of(' ') + 1);
     return text;
   }
@@ -122,8 +131,8 @@ std::optional<std::string> read_text(const YamlNode& node, const std::string& la
     return node.text;
   const std::string meant = node.kind == YamlNode::Kind::scalar ? nearest_name(node.text, names) : "";
   findings.error(node.place,
-                 fmt::format("{} must be {}{}, not {}", label, names.size() > 1 ? "one of " : "", fmt::join(names, ", "),
-                             shown(node)),
+                 fmt::format("{} must be {}{}, not {}", label, names.size() > 1 ? "one of " : "",
+                             fmt::join(names, ", "), shown(node)),
                  meant.empty() ? "" : fmt::format("did you mean '{}'?", meant));
   return std::nullopt;
 }
@@ -158,7 +167,8 @@ std::optional<std::vector<std::pair<int, double>>> read_indexed(const YamlNode& 
     all_legal = all_legal && is_new;
   };
   if (node.kind == YamlNode::Kind::mapping) {
-    for (const YamlNode::Entry& entry : node.entries) add(parse_index(entry.key), entry.key, entry.key_place, *entry.value);
+    for (const YamlNode::Entry& entry : node.entries)
+      add(parse_index(entry.key), entry.key, entry.key_place, *entry.value);
   } else if (node.kind == YamlNode::Kind::sequence) {
     for (std::size_t i = 0; i < node.items.size(); ++i) {
       const int index = indices.first + static_cast<int>(i);
@@ -211,7 +221,8 @@ std::optional<std::string> Section::text(std::string_view key) const {
 const YamlNode::Entry* Section::one_of(KeyTable alternatives, bool required) const {
   const YamlNode::Entry* chosen = nullptr;
   for (const YamlNode::Entry& entry : node_.entries) {
-    if (std::none_of(alternatives.begin(), alternatives.end(), [&](const numerics::Key& key) { return key.name == entry.key; }))
+    if (std::none_of(alternatives.begin(), alternatives.end(),
+                     [&](const numerics::Key& key) { return key.name == entry.key; }))
       continue;
     if (!chosen)
       chosen = &entry;
