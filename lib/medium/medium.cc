@@ -48,8 +48,7 @@ std::optional<double> wavelength_without_index(const Medium& medium) {
   constexpr int steps = 1000;
   const double ratio = medium.longest_um / medium.shortest_um;
   for (int i = 0; i <= steps; ++i) {
-    // The last one is the end itself: a power of the ratio could round beyond it.
-    const double wavelength_um = i == steps ? medium.longest_um : medium.shortest_um * std::pow(ratio, double(i) / steps);
+    const double wavelength_um = medium.shortest_um * std::pow(ratio, double(i) / steps);
     if (!(medium.index(wavelength_um) > 0)) return wavelength_um;
   }
   return std::nullopt;

@@ -23,7 +23,7 @@ struct Medium {
   double shortest_um = 0;
   double longest_um = 0;
 
-  // The ends belong to the range, with a slack of 1e-12 of the wavelength: 632.8 nm / 1000 need not be the double 0.6328.
+  // The ends belong to the range, with a slack of 1e-12 of the wavelength: 600.1 nm / 1000 is not the double 0.6001.
   bool covers(double wavelength_um) const {
     return wavelength_um >= shortest_um * (1 - 1e-12) && wavelength_um <= longest_um * (1 + 1e-12);
   }
