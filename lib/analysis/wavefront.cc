@@ -114,18 +114,18 @@ WavefrontResult wavefront(const scene::Scene& scene, const scene::Wavelength& wa
   std::vector<Sample> samples;  // in um
   for (std::size_t pixel = 0, ray = 0; pixel < result.mask.size(); ++pixel) {
     if (result.mask[pixel] == outside_pupil) continue;
-    Status status = rays.status(ray);
-    if (status == Status::ok) {
+    std::int32_t ended = rays.ended[ray];
+    if (ended == 0) {
       const double opd_um = optical_path_difference(sphere, rays, ray) * 1e3;
       if (std::isfinite(opd_um)) {
         samples.push_back({points[ray].x, points[ray].y, opd_um});
         result.opd_waves[pixel] = opd_um / wavelength.wavelength_um;
       } else {
-        status = Status::missed;
+        ended = trace::ending(image, Status::missed);  // the reference sphere
       }
     }
-    result.mask[pixel] = static_cast<std::uint32_t>(status);
-    ++result.rays.of[static_cast<std::size_t>(status)];
+    result.mask[pixel] = static_cast<std::uint32_t>(ended % 8);
+    result.rays.add(ended);
     ++ray;
   }
   if (samples.empty()) return {{}, "no ray of the pupil grid arrived"};

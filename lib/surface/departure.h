@@ -9,9 +9,10 @@
 // by bisection.
 //
 // It ends when a step no longer moves the point: |step| <= 4 eps (|x| + |y| + |z|), or when |f| is at the rounding of its
-// own terms, eps (|z| + |S| + |base sag|...). A point is returned only if |f| is within 64 times that rounding and the line crosses the surface in the
-// same sense as it crosses the base conic (otherwise the iteration has slipped over a fold to another hit); else the
-// status is not_converged. A line that misses the base conic misses the surface.
+// own terms, eps (|z| + sum of the |terms| of S). A point is returned only if |f| is within 64 times that rounding, or
+// within what 8 roundings of the path make of it, and the line crosses the surface in the same sense as it crosses the
+// base conic (otherwise the iteration has slipped over a fold to another hit); else the status is not_converged. A line
+// that misses the base conic misses the surface.
 //
 // Source: the safeguard is that of Dennis and Schnabel, Numerical Methods for Unconstrained Optimization (1983),
 // sections 2.5 and 6.3, for one variable.
@@ -56,8 +57,7 @@ Crossing<T> meet_departure(const Conic& base, const Surface& surface, const Vec3
     const T scale = abs(origin.x) + abs(origin.y) + abs(origin.z) + abs(t);
     if (abs(f) <= rounding || abs(step) <= T(4) * eps * scale) {
       const bool same_sense = (slope > T(0)) == (start.along > T(0));
-      // the last step is free: the derivative is at hand
-      const T path = start.path + (abs(step) <= T(4) * eps * scale ? t + step : t);
+      const T path = start.path + (abs(f) <= rounding ? t : t + step);  // the last step is free
       if (!(abs(f) <= T(64) * rounding + abs(slope) * T(8) * eps * scale) || !same_sense) break;
       return {path, {-h.dz_dx, -h.dz_dy, T(1)}, slope, Status::ok};
     }

@@ -9,6 +9,8 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
+#include <numeric>
 #include <vector>
 
 #include "lib/numerics/vec3.h"
@@ -55,19 +57,21 @@ struct RayBatch {
 
 constexpr std::int32_t ending(int surface_number, Status status) { return 8 * surface_number + static_cast<int>(status); }
 
-// How many rays ended each way.
+// How many rays ended each way, and where.
 struct StatusCounts {
   std::array<std::int64_t, surface::status_count> of{};
-  std::int64_t operator[](Status status) const { return of[static_cast<std::size_t>(status)]; }
-  std::int64_t total() const {
-    std::int64_t sum = 0;
-    for (const std::int64_t count : of) sum += count;
-    return sum;
+  std::map<std::int32_t, std::int64_t> endings;  // RayBatch::ended of the lost rays -> how many
+
+  void add(std::int32_t ended) {
+    ++of[static_cast<std::size_t>(ended % 8)];
+    if (ended != 0) ++endings[ended];
   }
+  std::int64_t operator[](Status status) const { return of[static_cast<std::size_t>(status)]; }
+  std::int64_t total() const { return std::accumulate(of.begin(), of.end(), std::int64_t{0}); }
 };
 inline StatusCounts count_statuses(const RayBatch& rays) {
   StatusCounts counts;
-  for (std::size_t i = 0; i < rays.size(); ++i) ++counts.of[static_cast<std::size_t>(rays.status(i))];
+  for (const std::int32_t ended : rays.ended) counts.add(ended);
   return counts;
 }
 
