@@ -38,7 +38,11 @@ struct Zernike {
       numerics::Key{.name = "indexing", .kind = numerics::ValueKind::text, .meaning = "order and normalisation of the terms",
                     .required = true, .choices = numerics::zernike_indexings},
       numerics::Key{.name = "coefficients_um", .kind = numerics::ValueKind::indexed,
-                    .meaning = "coefficient of each term: {index: value} or a list from the first", .required = true}};
+                    .meaning = "coefficient of each term: {index: value} or a list from the first", .required = true,
+                    .indexed_by = "indexing", .indices = [](std::string_view name) {
+                      const auto indexing = numerics::zernike_indexing(name);
+                      return numerics::IndexRange{numerics::first_zernike_index(indexing), numerics::last_zernike_index(indexing)};
+                    }}};
 
   // One step of the recurrence with the coefficients of its polynomial, in mm.
   struct Row {

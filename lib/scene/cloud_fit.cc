@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lib/scene/cloud_fit.h"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace sagitta::scene {
+namespace {
+
+using numerics::Vec3;
+
+// Least squares in bounded memory: rows are added in blocks, each block reduced with what came before to a triangle.
+class LeastSquares {
+ public:
+  explicit LeastSquares(Eigen::Index terms) : terms_(terms), block_(Eigen::MatrixXd::Zero(block_rows, terms + 1)) {}
+
+  // The next row, to be filled: `terms` values and the right side.
+  auto next_row() {
+    if (filled_ == block_rows) reduce();
+    return block_.row(filled_++);
+  }
+
+  // None unless the rows determine every coefficient: to 1e-6 of the largest one after scaling of the columns.
+  std::optional<Eigen::VectorXd> solve() {
+    if (filled_ < terms_) return std::nullopt;
+    Eigen::MatrixXd matrix = block_.topLeftCorner(filled_, terms_);
+    const Eigen::VectorXd scale = matrix.colwise().norm().cwiseMax(std::numeric_limits<double>::min()).cwiseInverse();
+    matrix = matrix * scale.asDiagonal();
+    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(matrix);
+    qr.setThreshold(1e-6);
+    if (qr.rank() < terms_) return std::nullopt;
+    Eigen::VectorXd solution = scale.asDiagonal() * qr.solve(block_.col(terms_).head(filled_));
+    if (!solution.allFinite()) return std::nullopt;
+    return solution;
+  }
+
+ private:
+  static constexpr Eigen::Index block_rows = 512;
+
+  void reduce() {
+    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(block_.topRows(filled_));
+    const Eigen::Index kept = terms_ + 1;
+    block_.topRows(kept) = qr.matrixQR().topRows(kept).triangularView<Eigen::Upper>();
+    filled_ = kept;
+  }
+
+  Eigen::Index terms_, filled_ = 0;
+  Eigen::MatrixXd block_;
+};
+
+// y-z second derivative at the origin of the fitted polynomial in (x, y) of the given degree.
+template <class Indices>
+std::optional<double> second_derivative(const std::vector<Vec3<double>>& points, const Indices& used, double scale, int degree) {
+  LeastSquares fit((degree + 1) * (degree + 2) / 2);
+  for (const std::uint32_t i : used) {
+    auto row = fit.next_row();
+    const double x = points[i].x / scale, y = points[i].y / scale;
+    Eigen::Index term = 0;
+    double x_power = 1;
+    for (int a = 0; a <= degree; ++a, x_power *= x) {
+      double power = x_power;
+      for (int b = 0; a + b <= degree; ++b, power *= y) row(term++) = power;
+    }
+    row(term) = points[i].z;
+  }
+  const auto solution = fit.solve();
+  if (!solution) return std::nullopt;
+  return 2 * (*solution)(2) / scale / scale;  // terms run 1, y, y^2, ...
+}
+
+}  // namespace
+
+surface::BaseSphere fit_base_sphere(const std::vector<Vec3<double>>& points, const Vec3<double>& centre) {
+  double scale = 0;
+  for (const auto& p : points) scale = std::max({scale, std::abs(p.x - centre.x), std::abs(p.y - centre.y), std::abs(p.z - centre.z)});
+  double mean = 0;
+  LeastSquares sphere(4), plane(3);
+  for (const auto& p : points) {
+    const Vec3<double> q = (1 / scale) * (p - centre);
+    mean += (p.z - centre.z) / static_cast<double>(points.size());
+    sphere.next_row() << dot(q, q) / 2, q.x, q.y, 1, q.z;
+    plane.next_row() << q.x, q.y, 1, q.z;
+  }
+  if (const auto s = sphere.solve()) return {centre, (*s)(0) / scale, (*s)(1), (*s)(2), (*s)(3) * scale};
+  if (const auto s = plane.solve()) return {centre, 0, (*s)(0), (*s)(1), (*s)(2) * scale};
+  return {centre, 0, 0, 0, mean};
+}
+
+double vertex_curvature(const prescription::PointCloud& cloud, double beam_radius) {
+  const auto& points = cloud.points;
+  const auto distance = [&](std::uint32_t i) { return std::hypot(points[i].x, points[i].y); };
+  std::vector<std::uint32_t> nearest;
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    if (!std::isnan(points[i].z)) nearest.push_back(i);
+  }
+  std::size_t count = static_cast<std::size_t>(
+      std::count_if(nearest.begin(), nearest.end(), [&](std::uint32_t i) { return distance(i) <= beam_radius / 2; }));
+  count = std::min(std::max<std::size_t>(count, 100), nearest.size());
+  for (;; count = std::min(2 * count, nearest.size())) {
+    const auto end = nearest.begin() + static_cast<std::ptrdiff_t>(count);
+    const auto is_nearer = [&](std::uint32_t a, std::uint32_t b) {
+      const double da = distance(a), db = distance(b);
+      return da != db ? da < db : a < b;
+    };
+    if (count < nearest.size()) std::nth_element(nearest.begin(), end, nearest.end(), is_nearer);
+    const std::vector<std::uint32_t> used(nearest.begin(), end);
+    double scale = 0;
+    for (const std::uint32_t i : used) scale = std::max(scale, distance(i));
+    if (!(scale > 0)) break;
+    if (const auto found = second_derivative(points, used, scale, 4)) return *found;
+    if (count < nearest.size()) continue;
+    if (const auto found = second_derivative(points, used, scale, 2)) return *found;
+    break;
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace sagitta::scene

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// Smooth surfaces fitted to points by least squares: for first order and for prediction, never for tracing.
+#pragma once
+
+#include <vector>
+
+#include "lib/prescription/point_cloud.h"
+#include "lib/surface/mesh.h"
+
+namespace sagitta::scene {
+
+// The sphere (or plane) of surface/mesh.h (1), by linear least squares of its left side with the coefficient of q_z
+// fixed: exact for points on a sphere or a plane. `centre` is the given one.
+surface::BaseSphere fit_base_sphere(const std::vector<numerics::Vec3<double>>& points, const numerics::Vec3<double>& centre);
+
+// The y-z second derivative at the local origin of a quartic in (x, y), 15 terms, fitted to the points within half the
+// beam's radius of the origin in (x, y), or the nearest 100 of them, whichever is more. Holes do not count.
+// Where those points do not determine a quartic (all on one ring, say), twice as many are taken, and so on; where all
+// do not, a quadratic (6 terms) takes its place; where they do not determine that either, the result is NaN.
+double vertex_curvature(const prescription::PointCloud& cloud, double beam_radius);
+
+}  // namespace sagitta::scene
