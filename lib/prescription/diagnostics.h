@@ -27,7 +27,6 @@ struct Finding {
 class Findings {
  public:
   void add(Finding finding);
-  void add(Finding finding);
   void error(Place place, std::string what, std::string hint = {});
   void warning(Place place, std::string what, std::string hint = {});
   void note(Place place, std::string what, std::string hint = {});
