@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lib/output/report.h"
+#include "lib/output/text.h"
 
 namespace sagitta::output {
 namespace {
@@ -105,16 +106,25 @@ std::string summary_text(const Report& report) {
   const bool wavefronts = !report.results.empty() && report.results.front().wavefront;
   const bool covers = !report.results.empty() && !report.results.front().coverage.empty();
   Table table;
-  table.columns = {{.name = "field"}, {.name = report.fields_are_heights ? "x" : "x", .unit = report.fields_are_heights ? "mm" : "deg"},
-                   {.name = "y", .unit = report.fields_are_heights ? "mm" : "deg"}, {.name = "wavelength", .unit = "nm"},
-                   {.name = "launched"}, {.name = "ok"}, {.name = "lost"}};
-  if (covers) table.columns.push_back({.name = "coverage", .unit = "%"});
-  if (spots)
-    for (const char* name : {"centroid x", "centroid y", "RMS radius", "geometric"})
-      table.columns.push_back({.name = name, .unit = name[0] == 'c' ? "mm" : "um"});
+  const auto column = [&](std::string name, std::string unit = {}) { table.columns.push_back({std::move(name), std::move(unit)}); };
+  const std::string field_unit = report.fields_are_heights ? "mm" : "deg";
+  column("field");
+  column("x", field_unit);
+  column("y", field_unit);
+  column("wavelength", "nm");
+  column("launched");
+  column("ok");
+  column("lost");
+  if (covers) column("coverage", "%");
+  if (spots) {
+    column("centroid x", "mm");
+    column("centroid y", "mm");
+    column("RMS radius", "um");
+    column("geometric", "um");
+  }
   if (wavefronts) {
-    table.columns.push_back({.name = "OPD RMS", .unit = "waves"});
-    table.columns.push_back({.name = "OPD P-V", .unit = "waves"});
+    column("OPD RMS", "waves");
+    column("OPD P-V", "waves");
   }
   std::string remarks;
   for (const auto& result : report.results) {
@@ -145,7 +155,7 @@ std::string summary_text(const Report& report) {
   }
   const scene::FirstOrder& paraxial = report.first_order;
   return fmt::format("{}\neffective focal length {} mm, back focal length {} mm, entrance pupil {} mm wide at z = {} mm\n\n{}{}{}",
-                     printable(report.system), significant(paraxial.effective_focal_length), significant(paraxial.back_focal_length),
+                     printable(report.system, 200), significant(paraxial.effective_focal_length), significant(paraxial.back_focal_length),
                      significant(2 * paraxial.entrance_pupil.semi_diameter), significant(paraxial.entrance_pupil.z),
                      to_text(table), remarks.empty() ? "" : "\n", remarks);
 }
