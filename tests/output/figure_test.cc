@@ -162,6 +162,33 @@ TEST(Figure, ZeroIsInTheMiddleOfADivergingMap) {
   for (const double t : {0.375, 0.5, 1.0}) EXPECT_GT(find(raster, color(ColorMap::diverging, t)).count, 170 * 170);
 }
 
+TEST(Figure, LargeValuesStandAboveSmallOnesOnTheAxisTheBarAndAmongCircles) {
+  Panel panel = flat_panel(0.3);
+  panel.axes.center_y = 1.5;  // y from -2.5 to 5.5: ticks at -2, 0, 2, 4
+  panel.circles = {{0, 4.5, 0.5, ""}};
+  const Raster raster = render({"", "", {panel}, 1});
+  const Rgb8 flat = color(ColorMap::sequential, 0.3F);
+  int left = 0, top = 0;
+  while (find(raster, flat).count > 0 && at(raster, left, raster.height / 2) != flat) ++left;
+  while (at(raster, left, top) != flat) ++top;
+
+  const auto is_tick = [&](double y) {
+    const int row = top + static_cast<int>(512 * (5.5 - y) / 8);
+    return at(raster, left - 3, row) != white && at(raster, left - 3, row - 2) == white;
+  };
+  for (const double y : {-2.0, 0.0, 2.0, 4.0}) EXPECT_TRUE(is_tick(y)) << y;
+  for (const double mirrored : {5.0, 3.0, 1.0, -1.0}) EXPECT_FALSE(is_tick(mirrored)) << mirrored;
+
+  const Found high = find(raster, color(ColorMap::sequential, 1 - 0.5 / 512));
+  const Found low = find(raster, color(ColorMap::sequential, 0.5 / 512));
+  EXPECT_NEAR(high.y, top, 3);  // neighbouring lines of the bar may round to the same bytes
+  EXPECT_NEAR(low.y, top + 511, 3);
+
+  // The circle's right end, at x = 0.5, y = 4.5.
+  EXPECT_NE(at(raster, left + 256 + 32, top + 64), flat);
+  EXPECT_EQ(at(raster, left + 256 + 32, top + 448), flat);
+}
+
 TEST(Figure, NothingReachesIntoTheMargins) {
   std::string endless, words;
   for (int i = 0; i < 300; ++i) {
