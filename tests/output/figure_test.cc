@@ -169,7 +169,7 @@ TEST(Figure, LargeValuesStandAboveSmallOnesOnTheAxisTheBarAndAmongCircles) {
   const Raster raster = render({"", "", {panel}, 1});
   const Rgb8 flat = color(ColorMap::sequential, 0.3F);
   int left = 0, top = 0;
-  while (find(raster, flat).count > 0 && at(raster, left, raster.height / 2) != flat) ++left;
+  while (at(raster, left, raster.height / 2) != flat) ++left;
   while (at(raster, left, top) != flat) ++top;
 
   const auto is_tick = [&](double y) {
