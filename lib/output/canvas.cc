@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include "lib/output/canvas_internal.h"
 #include "lib/output/font.h"
@@ -88,8 +89,9 @@ std::vector<std::string> Canvas::wrap(std::string_view text, double size, double
   };
   const auto end_word = [&] {
     if (word.empty()) return;
-    if (!line.empty() && text_width(line + " " + word, size) > width) end_line();
-    line += (line.empty() ? "" : " ") + std::exchange(word, {});
+    if (!line.empty() && text_width(line + ' ' + word, size) > width) end_line();
+    if (!line.empty()) line += ' ';
+    line += std::exchange(word, {});
   };
   for (const std::string& character : characters(text)) {
     if (character == " ") {
@@ -116,7 +118,10 @@ void Canvas::text(std::string_view text, double x, double y, double size, Align 
   cairo_t* context = cairo_->context;
   set_font(context, size);
   set_color(context, color);
-  cairo_move_to(context, align == Align::left ? x : align == Align::center ? x - width / 2 : x - width,
+  cairo_move_to(context,
+                align == Align::left     ? x
+                : align == Align::center ? x - width / 2
+                                         : x - width,
                 y + half_height * size);
   cairo_text_path(context, std::string(text).c_str());
   cairo_fill(context);
@@ -131,8 +136,9 @@ void Canvas::text_upward(std::string_view text, double x, double y, double size,
   cairo_restore(context);
 }
 
-void Canvas::text_with_halo(std::string_view text, double x, double y, double size, Rgb8 color) {
+void Canvas::text_with_halo(std::string_view text, double x, double y, double size, Rgb8 color, double most) {
   cairo_t* context = cairo_->context;
+  size = std::min(size, size * most / text_width(text, size));
   set_font(context, size);
   cairo_move_to(context, x, y + half_height * size);
   cairo_text_path(context, std::string(text).c_str());
@@ -202,7 +208,8 @@ Raster Canvas::raster() const {
     for (int x = 0; x < raster.width; ++x) {
       std::uint32_t packed = 0;
       std::memcpy(&packed, data + y * stride + 4 * x, sizeof packed);
-      for (const unsigned shift : {16U, 8U, 0U}) raster.rgb.push_back(static_cast<std::uint8_t>(packed >> shift & 0xFFU));
+      for (const unsigned shift : {16U, 8U, 0U})
+        raster.rgb.push_back(static_cast<std::uint8_t>(packed >> shift & 0xFFU));
     }
   return raster;
 }

@@ -31,8 +31,9 @@ class Canvas {
   // The anchor is the left end, middle or right end of the line; y is half way up the figures, so that a label is
   // centred on its tick. Text that is wider than `most` (where that is positive) is drawn smaller.
   void text(std::string_view text, double x, double y, double size, Align align, Rgb8 color, double most = 0);
-  void text_upward(std::string_view text, double x, double y, double size, Rgb8 color, double most);  // centred, turned
-  void text_with_halo(std::string_view text, double x, double y, double size, Rgb8 color);            // from the left
+  // Centred and turned; from the left with a white rim, for text on a map.
+  void text_upward(std::string_view text, double x, double y, double size, Rgb8 color, double most);
+  void text_with_halo(std::string_view text, double x, double y, double size, Rgb8 color, double most);
 
   void fill(const Box& box, Rgb8 color);
   void frame(const Box& box, Rgb8 color);  // one pixel wide, just outside the box

@@ -20,7 +20,7 @@ Chroma polar(double chroma, double hue_deg) {
 
 // The quadratic Bezier curve of the sequential map. The control point pulls it as far toward green as sRGB allows.
 Chroma bezier(double u) {
-  static const Chroma start = polar(0.13, 292), control = {-0.26, 0.01}, end = polar(0.17, 106);
+  static const Chroma start = polar(0.14, 295), control = {-0.28, 0.08}, end = polar(0.17, 106);
   const double v = 1 - u;
   return {v * v * start.a + 2 * u * v * control.a + u * u * end.a,
           v * v * start.b + 2 * u * v * control.b + u * u * end.b};
@@ -39,12 +39,15 @@ double parameter_at(double s) {
     return sum;
   }();
   const double wanted = s * length.back();
-  const auto above = std::clamp(std::upper_bound(length.begin(), length.end(), wanted), length.begin() + 1, length.end() - 1);
+  const auto above =
+      std::clamp(std::upper_bound(length.begin(), length.end(), wanted), length.begin() + 1, length.end() - 1);
   const double below = *(above - 1);
   return (static_cast<double>(above - 1 - length.begin()) + (wanted - below) / (*above - below)) / step_count;
 }
 
-std::uint8_t byte(double encoded) { return static_cast<std::uint8_t>(std::lround(255 * std::clamp(encoded, 0.0, 1.0))); }
+std::uint8_t byte(double encoded) {
+  return static_cast<std::uint8_t>(std::lround(255 * std::clamp(encoded, 0.0, 1.0)));
+}
 
 }  // namespace
 

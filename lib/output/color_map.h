@@ -32,7 +32,7 @@ Rgb8 color(ColorMap map, double t);
 inline constexpr Rgb8 no_data_color{217, 217, 217};
 
 std::array<double, 3> linear_srgb(const Oklab& color);  // components in [0, 1] where the colour is in gamut
-double linear_from_srgb(double encoded);                 // both on [0, 1]
+double linear_from_srgb(double encoded);                // both on [0, 1]
 double srgb_from_linear(double linear);
 
 }  // namespace sagitta::output

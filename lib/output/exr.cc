@@ -100,7 +100,8 @@ std::string encode(const std::string& path, std::span<const ExrPart> parts) {
     header.compression() = Imf::ZIP_COMPRESSION;
     for (const ExrChannel& channel : part.channels)
       header.channels().insert(
-          channel.name, Imf::Channel(std::visit([](const auto& pixels) { return pixel_type(pixels); }, channel.pixels)));
+          channel.name,
+          Imf::Channel(std::visit([](const auto& pixels) { return pixel_type(pixels); }, channel.pixels)));
     for (const ExrAttribute& attribute : part.attributes) {
       if (header.find(attribute.name) != header.end())
         throw std::invalid_argument(

@@ -21,8 +21,9 @@ constexpr double margin = 22, gap = 22;  // around the sheet and between panels
 Raster render(const Figure& figure) {
   const std::size_t panel_count = std::min(figure.panels.size(), most_panels);
   const std::size_t least_columns = (panel_count + most_rows - 1) / most_rows;
-  const std::size_t columns = std::clamp<std::size_t>(static_cast<std::size_t>(std::max(1, figure.columns)),
-                                                      std::max<std::size_t>(1, least_columns), std::max<std::size_t>(1, panel_count));
+  const std::size_t columns =
+      std::clamp<std::size_t>(static_cast<std::size_t>(std::max(1, figure.columns)),
+                              std::max<std::size_t>(1, least_columns), std::max<std::size_t>(1, panel_count));
   const std::size_t rows = (panel_count + columns - 1) / columns;
   const double side = panel_count <= 1 ? 512 : columns <= 2 && panel_count <= 4 ? 384 : 256;
 
@@ -40,8 +41,8 @@ Raster render(const Figure& figure) {
 
   std::string footer_text = printable(figure.footer, most_characters);
   if (panel_count < figure.panels.size())
-    footer_text += fmt::format("{}{} of {} panels are shown.", footer_text.empty() ? "" : "  ", panel_count,
-                               figure.panels.size());
+    footer_text +=
+        fmt::format("{}{} of {} panels are shown.", footer_text.empty() ? "" : "  ", panel_count, figure.panels.size());
   const std::vector<std::string> title = Canvas::wrap(printable(figure.title, most_characters), title_size, content);
   const std::vector<std::string> footer = Canvas::wrap(footer_text, tick_size, content);
 
@@ -64,7 +65,8 @@ Raster render(const Figure& figure) {
   Canvas canvas(static_cast<int>(std::ceil(content + 2 * margin)), static_cast<int>(std::ceil(bottom + margin)));
   const auto write = [&](const std::vector<std::string>& lines, double top, double size, Rgb8 line_color) {
     for (std::size_t i = 0; i < lines.size(); ++i)
-      canvas.text(lines[i], margin, top + size * line_height * (static_cast<double>(i) + 0.5), size, Align::left, line_color);
+      canvas.text(lines[i], margin, top + size * line_height * (static_cast<double>(i) + 0.5), size, Align::left,
+                  line_color);
   };
   write(title, margin, title_size, ink);
   write(footer, footer_top, tick_size, soft_ink);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A sheet of panels: maps with axes and colour bars, for a person to look at. Plain numbers and texts in, a picture out;
-// what they mean is the caller's business.
+// A sheet of panels: maps with axes and colour bars, for a person to look at. Plain numbers and texts in, a picture
+// out; what they mean is the caller's business.
 //
 // Every panel of a sheet has the same plot size (in pixels of the picture: 512 for a single panel, 384 for up to four
 // in two columns, 256 otherwise), so three columns make a picture 1200 to 1300 pixels wide. Texts that are too long are
@@ -27,7 +27,8 @@ struct Map {
 };
 
 // Where the map lies on the two axes: the size of a map pixel and the middle of the map. In mm, or in `unit_mm = false`
-// plain numbers (a unit pupil). A length axis whose middle is far from zero is labelled from that middle: "y − 2.3451 mm (µm)".
+// plain numbers (a unit pupil). A length axis whose middle is far from zero is labelled from that middle: "y − 2.3451
+// mm (µm)".
 struct Axes {
   double pixel_width = 1, pixel_height = 1;
   double center_x = 0, center_y = 0;
@@ -51,7 +52,8 @@ struct Panel {
   Map map;
   Axes axes;
   ColorMap color_map = ColorMap::sequential;
-  std::optional<Range> range;       // none: 0 (or the least positive value, if logarithmic) to the largest; +-largest if diverging
+  std::optional<Range>
+      range;  // none: 0 (or the least positive value, if logarithmic) to the largest; +-largest if diverging
   bool log_scale = false;           // sequential maps of positive values
   bool zero_is_background = false;  // ray counts: a pixel without a ray stays white
   std::string quantity;             // the colour bar's label, "OPD"

@@ -14,9 +14,12 @@ namespace {
 constexpr double tick_length = 4, tick_gap = 3, bar_gap = 12, bar_width = 13;
 constexpr std::size_t most_characters = 400;  // of any text of a panel
 
-void add(Scale& scale, double at, std::string label) {
-  scale.widest = std::max(scale.widest, Canvas::text_width(label, tick_size));
-  scale.ticks.push_back({at, std::move(label)});
+// Puts the ticks on the scale; place(value) is where a value stands along it.
+void put(Scale& scale, const Ticks& ticks, const auto& place) {
+  for (std::size_t i = 0; i < ticks.values.size(); ++i) {
+    scale.ticks.push_back({place(ticks.values[i]), ticks.labels[i]});
+    scale.widest = std::max(scale.widest, Canvas::text_width(ticks.labels[i], tick_size));
+  }
 }
 
 // An axis of `extent` about `center`; `pixels` long.
@@ -26,16 +29,20 @@ Scale axis_scale(const std::string& name, double center, double extent, bool uni
   // Far from zero the middle, rounded well below a tick, becomes the origin.
   double origin = 0;
   std::string from;
-  if (unit_mm && std::abs(center) > extent) {
-    const int decimals = std::max(0, 2 - static_cast<int>(std::floor(std::log10(extent))));
+  if (unit_mm && std::abs(center) > extent && std::isfinite(center)) {
+    const int decimals = static_cast<int>(std::clamp(2 - std::floor(std::log10(extent)), 0.0, 12.0));
     const double power = std::pow(10.0, decimals);
     origin = std::round(center * power) / power;
     from = fmt::format(" {} {:.{}f} mm", origin < 0 ? "+" : "−", std::abs(origin), decimals);
   }
   scale.label = printable(name, most_characters) + from + (unit_mm ? fmt::format(" ({})", unit.name) : "");
   const double low = (center - origin - extent / 2) * unit.per_mm, high = (center - origin + extent / 2) * unit.per_mm;
-  const Ticks ticks = linear_ticks(low, high, pixels > 320 ? 7 : 5);
-  for (const double value : ticks.values) add(scale, (value - low) / (high - low), tick_label(value, ticks.decimals));
+  put(scale,
+      linear_ticks(low, high,
+                   pixels > 320   ? 7
+                   : pixels > 150 ? 5
+                                  : 2),
+      [&](double value) { return (value - low) / (high - low); });
   return scale;
 }
 
@@ -57,10 +64,15 @@ Range automatic_range(const Panel& panel) {
 PanelLayout::PanelLayout(const Panel& panel, double plot_side) : panel_(panel) {
   const Map& map = panel.map;
   const Axes& axes = panel.axes;
-  const double extent_x = std::max(1, map.width) * axes.pixel_width, extent_y = std::max(1, map.height) * axes.pixel_height;
+  // A size that is none (0, NaN) still gets a panel.
+  const auto extent = [](int count, double pixel) {
+    const double size = std::max(1, count) * pixel;
+    return size > 0 && std::isfinite(size) ? size : 1;
+  };
+  const double extent_x = extent(map.width, axes.pixel_width), extent_y = extent(map.height, axes.pixel_height);
   const double larger = std::max(extent_x, extent_y);
-  const auto pixels = [&](double extent) {
-    return static_cast<int>(std::lround(std::clamp(plot_side * extent / larger, 24.0, plot_side)));
+  const auto pixels = [&](double size) {
+    return static_cast<int>(std::lround(std::clamp(plot_side * size / larger, 24.0, plot_side)));
   };
   width_ = pixels(extent_x);
   height_ = pixels(extent_y);
@@ -72,18 +84,21 @@ PanelLayout::PanelLayout(const Panel& panel, double plot_side) : panel_(panel) {
   y_scale_ = axis_scale(axes.y_label, axes.center_y, extent_y, axes.unit_mm, height_);
 
   range_ = panel.range.value_or(automatic_range(panel));
-  if (!(range_.low < range_.high)) {  // all values are one: room for it in the middle, or above zero
-    const double size = range_.low == 0 ? 1 : std::abs(range_.low) / 2;
-    range_ = {panel.color_map == ColorMap::diverging || range_.low != 0 ? range_.low - size : 0, range_.low + size};
+  if (!(range_.low < range_.high)) {  // all values are one
+    const double size = range_.low != 0 && std::isfinite(range_.low) ? std::abs(range_.low) : 1;
+    range_ = {panel.color_map == ColorMap::diverging ? -size
+              : panel.log_scale                      ? size
+                                                     : 0,
+              panel.log_scale ? 10 * size : size};
   }
-  const Magnitude power = magnitude(std::max(std::abs(range_.low), std::abs(range_.high)));
-  const bool counts = panel.zero_is_background;
+  const bool log_bar = panel.log_scale && range_.low > 0;
+  const Magnitude power = log_bar ? Magnitude{} : magnitude(std::max(std::abs(range_.low), std::abs(range_.high)));
   const int most = height_ > 320 ? 9 : 7;
-  const Ticks ticks = panel.log_scale && range_.low > 0
-                          ? log_ticks(range_.low / power.factor, range_.high / power.factor, most)
-                          : linear_ticks(range_.low / power.factor, range_.high / power.factor, most, counts ? 1 : 0);
-  for (const double value : ticks.values)
-    add(bar_scale_, fraction(value * power.factor), tick_label(value, ticks.decimals));
+  const double smallest_step = panel.zero_is_background ? 1 : 0;  // counts are whole
+  put(bar_scale_,
+      log_bar ? log_ticks(range_.low, range_.high, most)
+              : linear_ticks(range_.low / power.factor, range_.high / power.factor, most, smallest_step / power.factor),
+      [&](double value) { return fraction(value * power.factor); });
   const std::string unit = power.label + printable(panel.unit, most_characters);
   bar_scale_.label = printable(panel.quantity, most_characters) + (unit.empty() ? "" : " (" + unit + ")");
 }
@@ -92,9 +107,7 @@ double PanelLayout::left() const { return label_size * line_height + 4 + y_scale
 double PanelLayout::right() const {
   return bar_gap + bar_width + tick_length + tick_gap + bar_scale_.widest + 6 + label_size * line_height;
 }
-double PanelLayout::below() {
-  return tick_length + tick_gap + tick_size * line_height + label_size * line_height + 2;
-}
+double PanelLayout::below() { return tick_length + tick_gap + tick_size * line_height + label_size * line_height + 2; }
 
 std::vector<std::string> PanelLayout::title_lines(double width) const {
   return Canvas::wrap(printable(panel_.title, most_characters), panel_title_size, width);
@@ -138,12 +151,16 @@ void PanelLayout::draw(Canvas& canvas, int x, int y, double header_width) const 
   if (has_data_) {
     draw_map(canvas, x, y);
     draw_bar(canvas, plot);
+    draw_circles(canvas, plot);
   } else {
     canvas.fill(plot, no_data_color);
-    canvas.text(printable(panel_.empty_note, most_characters), x + plot.width / 2, y + plot.height / 2, label_size,
-                Align::center, soft_ink, plot.width - 16);
+    const auto lines = Canvas::wrap(printable(panel_.empty_note, most_characters), label_size, plot.width - 24);
+    double line_y = y + plot.height / 2 - label_size * line_height / 2 * (static_cast<double>(lines.size()) - 1);
+    for (const std::string& line : lines) {
+      canvas.text(line, x + plot.width / 2, line_y, label_size, Align::center, soft_ink);
+      line_y += label_size * line_height;
+    }
   }
-  draw_circles(canvas, plot);
   draw_axes(canvas, plot);
 }
 
@@ -177,7 +194,8 @@ void PanelLayout::draw_axes(Canvas& canvas, const Box& plot) const {
   for (const Scale::Tick& tick : x_scale_.ticks) {
     const double at = std::floor(plot.x + tick.at * plot.width) + 0.5;
     canvas.line(at, bottom + 1, at, bottom + 1 + tick_length, 1, frame_ink);
-    canvas.text(tick.label, at, bottom + tick_length + tick_gap + tick_size * line_height / 2, tick_size, Align::center, ink);
+    canvas.text(tick.label, at, bottom + tick_length + tick_gap + tick_size * line_height / 2, tick_size, Align::center,
+                ink);
   }
   for (const Scale::Tick& tick : y_scale_.ticks) {
     const double at = std::floor(bottom - tick.at * plot.height) + 0.5;
@@ -187,8 +205,8 @@ void PanelLayout::draw_axes(Canvas& canvas, const Box& plot) const {
   canvas.text(x_scale_.label, plot.x + plot.width / 2,
               bottom + tick_length + tick_gap + tick_size * line_height + label_size * line_height / 2, label_size,
               Align::center, ink, plot.width);
-  canvas.text_upward(y_scale_.label, plot.x - left() + label_size * line_height / 2, plot.y + plot.height / 2, label_size,
-                     ink, plot.height);
+  canvas.text_upward(y_scale_.label, plot.x - left() + label_size * line_height / 2, plot.y + plot.height / 2,
+                     label_size, ink, plot.height);
 }
 
 void PanelLayout::draw_bar(Canvas& canvas, const Box& plot) const {
@@ -215,12 +233,16 @@ void PanelLayout::draw_circles(Canvas& canvas, const Box& plot) const {
   double y = plot.y + plot.height - 12 - 16 * (static_cast<double>(panel_.circles.size()) - 1);
   for (std::size_t i = 0; i < panel_.circles.size(); ++i) {
     const Circle& circle = panel_.circles[i];
-    canvas.circle(plot.x + plot.width / 2 + (circle.x - axes.center_x) * scale_x,
-                  plot.y + plot.height / 2 - (circle.y - axes.center_y) * scale_y, circle.radius * scale_x, 1.4, circle_ink,
-                  i > 0, plot);
+    const double at_x = plot.x + plot.width / 2 + (circle.x - axes.center_x) * scale_x;
+    const double at_y = plot.y + plot.height / 2 - (circle.y - axes.center_y) * scale_y;
+    const double radius = circle.radius * scale_x;
+    // Nothing of a circle beyond all measure (or of none: NaN) would be seen, and Cairo would draw it for ever.
+    const auto in_reach = [](double v) { return std::abs(v) < 1e5; };
+    if (in_reach(at_x) && in_reach(at_y) && in_reach(radius) && radius > 0)
+      canvas.circle(at_x, at_y, radius, 1.4, circle_ink, i > 0, plot);
     if (circle.label.empty()) continue;
     canvas.line(plot.x + 8, y, plot.x + 26, y, 1.4, circle_ink, i > 0);
-    canvas.text_with_halo(printable(circle.label, 40), plot.x + 32, y, tick_size, ink);
+    canvas.text_with_halo(printable(circle.label, 40), plot.x + 32, y, tick_size, ink, plot.width - 40);
     y += 16;
   }
 }

@@ -15,7 +15,12 @@ constexpr std::string_view replacement = "\xEF\xBF\xBD";  // U+FFFD
 std::size_t code_point_length(std::string_view text) {
   const auto at = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned lead = at(0);
-  const std::size_t length = lead < 0x80 ? 1 : lead < 0xC2 ? 0 : lead < 0xE0 ? 2 : lead < 0xF0 ? 3 : lead < 0xF5 ? 4 : 0;
+  const std::size_t length = lead < 0x80   ? 1
+                             : lead < 0xC2 ? 0
+                             : lead < 0xE0 ? 2
+                             : lead < 0xF0 ? 3
+                             : lead < 0xF5 ? 4
+                                           : 0;
   if (length > text.size()) return 0;
   for (std::size_t i = 1; i < length; ++i)
     if ((at(i) & 0xC0U) != 0x80) return 0;
@@ -57,7 +62,8 @@ std::string significant(double value, int digits) {
   if (std::isnan(value)) return "-";
   if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
   if (value == 0) return fmt::format("{:.{}f}", 0.0, digits - 1);
-  const std::string scientific = fmt::format("{:.{}e}", value, digits - 1);  // its exponent is that of the rounded value
+  const std::string scientific =
+      fmt::format("{:.{}e}", value, digits - 1);  // its exponent is that of the rounded value
   const int exponent = std::stoi(scientific.substr(scientific.find('e') + 1));
   if (exponent < -4 || exponent > digits + 2) return scientific;
   return fmt::format("{:.{}f}", value, std::max(0, digits - 1 - exponent));

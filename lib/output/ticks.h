@@ -8,20 +8,18 @@
 namespace sagitta::output {
 
 struct Ticks {
-  std::vector<double> values;  // ascending, inside the interval; each the double nearest to its decimal
-  int decimals = 0;            // that show them exactly
+  std::vector<double> values;       // ascending, inside the interval; each the double nearest to its label
+  std::vector<std::string> labels;  // exact; with a true minus sign (U+2212)
 };
 
 // Multiples of the smallest step out of 1, 2, 5 times a power of ten, not below smallest_step, of which at most `most`
-// lie in [low, high]. Needs finite low < high and most >= 2; otherwise there is none.
+// lie in [low, high]. Needs most >= 2 and finite low < high, apart by 1e-290; otherwise there is none.
 Ticks linear_ticks(double low, double high, int most, double smallest_step = 0);
 
-// Of a logarithmic axis, 0 < low < high: powers of ten, thinned to every second, third ... until at most `most` are
-// left; their doubles and fives too where there are less than two. Falls back to linear ticks within less than an octave.
+// Of a logarithmic axis, 0 < low < high: 1, 2, 5 times the powers of ten; where these are more than `most` >= 2, the
+// powers alone, then every second, third ... of them. Linear ticks where the interval holds less than two. Labels
+// below 0.001 and from 100 000 on are powers: "2×10⁵".
 Ticks log_ticks(double low, double high, int most);
-
-// "−0.5": fixed, with a true minus sign (U+2212).
-std::string tick_label(double value, int decimals);
 
 // mm, µm or nm, by the size of what is shown.
 struct LengthUnit {
