@@ -21,6 +21,7 @@
 #include <sstream>
 #include <system_error>
 #include <unordered_map>
+#include <utility>
 
 #include "lib/prescription/utf8.h"
 
