@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 
 namespace sagitta::prescription {
 namespace {
@@ -12,6 +14,15 @@ std::vector<double> used_wavelengths_nm(const Model& model) {
   std::vector<double> wavelengths = model.wavelengths_nm;
   if (model.primary_nm) wavelengths.push_back(*model.primary_nm);
   return wavelengths;
+}
+
+// The first of them, and how many more there are.
+std::string shown(const std::vector<double>& wavelengths_nm) {
+  constexpr std::size_t most = 8;
+  const std::size_t shown_count = std::min(most, wavelengths_nm.size());
+  std::string text = fmt::format("{}", fmt::join(wavelengths_nm.begin(), wavelengths_nm.begin() + shown_count, ", "));
+  if (wavelengths_nm.size() > most) text += fmt::format(" and {} more", wavelengths_nm.size() - most);
+  return text + " nm";
 }
 
 void check_medium(const MediumUse& use, const std::vector<double>& wavelengths_nm, Findings& findings) {
@@ -25,12 +36,11 @@ void check_medium(const MediumUse& use, const std::vector<double>& wavelengths_n
   }
   // Ranges are shown with 9 digits: 0.31 um times 1000 need not be 310.
   if (!outside.empty())
-    findings.error(use.place,
-                   fmt::format("{} is valid from {:.9g} to {:.9g} nm, not at {} nm", use.medium.name,
-                               use.medium.shortest_um * 1000, use.medium.longest_um * 1000, fmt::join(outside, ", ")));
+    findings.error(use.place, fmt::format("{} is valid from {:.9g} to {:.9g} nm, not at {}", use.medium.name,
+                                          use.medium.shortest_um * 1000, use.medium.longest_um * 1000, shown(outside)));
   if (!without_index.empty())
-    findings.error(use.place, fmt::format("the index of {} is not positive at {} nm", use.medium.name,
-                                          fmt::join(without_index, ", ")));
+    findings.error(use.place,
+                   fmt::format("the index of {} is not positive at {}", use.medium.name, shown(without_index)));
 }
 
 void check_aperture(const Model& model, Findings& findings) {

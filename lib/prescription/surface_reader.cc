@@ -108,7 +108,8 @@ std::vector<Surface> read_surfaces(const YamlNode& list, const std::string& fold
     surfaces.push_back(read_surface(section, number == list.items.size(), folder, media, findings));
     if (surfaces.back().stop) stops.push_back({number, stop->place});
   }
-  if (stops.empty() && all_stops_known) findings.error(list.place, "no surface is the stop", "give exactly one surface 'stop: true'");
+  if (stops.empty() && all_stops_known)
+    findings.error(list.place, "no surface is the stop", "give exactly one surface 'stop: true'");
   if (stops.size() > 1)
     for (const Stop& one : stops)
       findings.error(one.place, fmt::format("surface {} is one of {} stops", one.number, stops.size()),

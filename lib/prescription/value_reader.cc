@@ -96,9 +96,9 @@ std::optional<double> read_number(const YamlNode& node, const std::string& label
   const ParsedNumber parsed = is_plain(node) ? parse_number(node.text) : ParsedNumber{};
   if (parsed.ok && range.contains(parsed.value)) return parsed.value;
   findings.error(node.place, fmt::format("{} must be {}, not {}", label, in_words(range), shown(node)),
-                 !parsed.ok                   ? number_hint(node)
-                 : std::isinf(parsed.value) ? "it must be finite"
-                                              : "");
+                 !parsed.ok                                    ? number_hint(node)
+                 : std::isinf(parsed.value) && !range.infinite ? "it must be finite"
+                                                               : "");
   return std::nullopt;
 }
 

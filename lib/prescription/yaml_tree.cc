@@ -21,6 +21,7 @@
 #include <sstream>
 #include <system_error>
 #include <unordered_map>
+#include <utility>
 
 #include "lib/prescription/utf8.h"
 
@@ -224,7 +225,8 @@ bool is_plain_text(const std::string& file, const std::string& text, Findings& f
       char code[8];
       std::snprintf(code, sizeof code, "0x%02X", static_cast<unsigned>(static_cast<unsigned char>(rest[0])));
       findings.error({file, line, static_cast<int>(i - line_start) + 1},
-                     std::string("not YAML: the byte ") + code + " is no text", "save the file as UTF-8, without control characters");
+                     std::string("not YAML: the byte ") + code + " is no text",
+                     "save the file as UTF-8, without control characters");
       return false;
     }
     i += length;

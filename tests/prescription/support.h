@@ -29,7 +29,9 @@ class TemporaryFolder {
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
+  // A new file each time: some file systems bring a file that is written over to the disk at once, which takes longer.
   std::string write(const std::string& name, const std::string& text) const {
+    std::filesystem::remove(path_ / name);
     std::ofstream(path_ / name, std::ios::binary) << text;
     return (path_ / name).string();
   }

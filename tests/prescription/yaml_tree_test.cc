@@ -52,7 +52,10 @@ TEST(YamlTree, EveryNodeHasItsPlace) {
 }
 
 TEST(YamlTree, WindowsFilesAndByteOrderMarksAreRead) {
-  for (const std::string text : {"a: 1\r\nb: 2\r\n", "\xef\xbb\xbf" "a: 1\nb: 2\n", "a: 1\nb: 2"}) {
+  for (const std::string text : {"a: 1\r\nb: 2\r\n",
+                                 "\xef\xbb\xbf"
+                                 "a: 1\nb: 2\n",
+                                 "a: 1\nb: 2"}) {
     const Tree tree = read(text);
     ASSERT_TRUE(tree.root) << test::text_of(tree.findings);
     EXPECT_EQ(tree.root->find("b")->text, "2");
@@ -90,10 +93,17 @@ TEST(YamlTree, FilesThatCannotBeReadAreErrors) {
 }
 
 TEST(Numbers, AreReadWithoutTheLocale) {
-  const std::vector<std::pair<std::string, double>> cases{
-      {"1.5", 1.5}, {"-3e-4", -3e-4}, {"+2", 2}, {".5", 0.5}, {"5.", 5}, {"0", 0}, {"1E3", 1000},
-      {".inf", std::numeric_limits<double>::infinity()}, {"-.Inf", -std::numeric_limits<double>::infinity()},
-      {"0.1", 0.1}, {"4.9e-324", 4.9e-324}};
+  const std::vector<std::pair<std::string, double>> cases{{"1.5", 1.5},
+                                                          {"-3e-4", -3e-4},
+                                                          {"+2", 2},
+                                                          {".5", 0.5},
+                                                          {"5.", 5},
+                                                          {"0", 0},
+                                                          {"1E3", 1000},
+                                                          {".inf", std::numeric_limits<double>::infinity()},
+                                                          {"-.Inf", -std::numeric_limits<double>::infinity()},
+                                                          {"0.1", 0.1},
+                                                          {"4.9e-324", 4.9e-324}};
   for (const auto& [text, value] : cases) {
     const ParsedNumber parsed = parse_number(text);
     EXPECT_TRUE(parsed.ok) << text;
@@ -104,8 +114,8 @@ TEST(Numbers, AreReadWithoutTheLocale) {
 }
 
 TEST(Numbers, AreNothingElse) {
-  for (const std::string text : {"", "-", "+", "+-1", "--1", "inf", "nan", "-nan(1)", "1,5", "1 ", " 1", "0x10", "1e", "1e999",
-                                 "1.2.3", "7.8 mm", "one", "infinity", "1_000"})
+  for (const std::string text : {"", "-", "+", "+-1", "--1", "inf", "nan", "-nan(1)", "1,5", "1 ", " 1", "0x10", "1e",
+                                 "1e999", "1.2.3", "7.8 mm", "one", "infinity", "1_000"})
     EXPECT_FALSE(parse_number(text).ok) << text;
 }
 
