@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // A homogeneous medium: its name, its dispersion, and the range of wavelengths in which it may be used.
+// Wavelengths are in um; from nm divide by 1000 (not times 1e-3: the quotient is the correctly rounded one).
 #pragma once
 
-#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace sagitta::medium {
 
-// The refractive index as a function of the wavelength in um, valid in [shortest_um, longest_um]. Indices are relative
-// to air, as glass catalogues give them.
+// The refractive index as a function of the wavelength in um. Indices are relative to air, as glass catalogues give them.
+// Asked through Medium::index only, which knows the range and takes away what is no index.
 class Dispersion {
  public:
   virtual ~Dispersion() = default;
@@ -22,14 +23,26 @@ struct Medium {
   double shortest_um = 0;
   double longest_um = 0;
 
-  bool covers(double wavelength_um) const { return wavelength_um >= shortest_um && wavelength_um <= longest_um; }
-  double index(double wavelength_um) const { return dispersion->index(wavelength_um); }
+  // The ends belong to the range, with a slack of 1e-12 of the wavelength: 600.1 nm / 1000 is not the double 0.6001.
+  bool covers(double wavelength_um) const {
+    return wavelength_um >= shortest_um * (1 - 1e-12) && wavelength_um <= longest_um * (1 + 1e-12);
+  }
+
+  // NaN outside the range, and where the dispersion gives no positive, finite value (n^2 <= 0, a pole). A caller that
+  // wants to trace must look at it once.
+  double index(double wavelength_um) const;
 };
+
+// The first wavelength in um, of 1001 that divide the range evenly on a logarithmic scale, at which the medium has no
+// index although its range (positive and finite) says so; none where all is well. A pole narrower than that can go
+// unseen here, but not in index().
+std::optional<double> wavelength_without_index(const Medium& medium);
 
 Medium constant(std::string name, double index);
 Medium air();  // index exactly 1 at every wavelength: the reference of catalogue indices
 
 // Two-term Cauchy n = A + B/lambda^2 through nd (587.5618 nm) with nF - nC = (nd - 1)/vd (486.1327 and 656.2725 nm).
+// A model that the user asks for, meant for visible light; no range is known for it, so none is enforced.
 Medium from_nd_vd(double nd, double vd);
 
 }  // namespace sagitta::medium

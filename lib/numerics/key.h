@@ -40,6 +40,11 @@ inline constexpr Range positive{0, std::numeric_limits<double>::infinity(), true
 inline constexpr Range not_negative{0};
 inline constexpr Range nonzero_or_infinite{.zero = false, .infinite = true};
 
+// The legal indices of an `indexed` value; a list counts from the first.
+struct IndexRange {
+  int first = 0, last = 100'000;
+};
+
 struct Key {
   std::string_view name;
   ValueKind kind = ValueKind::number;
@@ -48,6 +53,9 @@ struct Key {
   Range range = any_number;          // of a number, and of each element of a vector
   double fallback = 0;               // of a number that is not given
   std::string_view choices = {};     // of a text: "osa|noll|fringe"; the first is the default unless required
+  // Of an `indexed` value whose indices depend on a choice: the key of the choice, earlier in the table, and the rule.
+  std::string_view indexed_by = {};
+  IndexRange (*indices)(std::string_view choice) = nullptr;  // none: IndexRange{}
 };
 
 }  // namespace sagitta::numerics

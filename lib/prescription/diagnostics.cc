@@ -14,7 +14,9 @@ namespace {
 constexpr std::size_t excerpt_bytes = 40;
 constexpr std::size_t longest_name = 64;  // a longer one is no misspelt key; bounds the time as well
 
-unsigned char byte(std::string_view text, std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0; }
+unsigned char byte(std::string_view text, std::size_t i) {
+  return i < text.size() ? static_cast<unsigned char>(text[i]) : 0;
+}
 
 // Edits that turn one into the other: insert, delete, replace a byte, or swap two neighbours (Damerau and Levenshtein,
 // optimal string alignment), by rows of the table of prefixes.
@@ -25,7 +27,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     row[0] = i;
     for (std::size_t j = 1; j <= b.size(); ++j) {
       row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (a[i - 1] == b[j - 1] ? 0u : 1u)});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) row[j] = std::min(row[j], before_last[j - 2] + 1);
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        row[j] = std::min(row[j], before_last[j - 2] + 1);
     }
     before_last = std::exchange(last, row);
   }
@@ -41,27 +44,33 @@ std::size_t utf8_length(std::string_view text) {
   if (first < 0x80) return 1;
   if (first < 0xC2 || !continues(1)) return 0;
   if (first < 0xE0) return 2;
-  if (first < 0xF0) return continues(2) && !(first == 0xE0 && second < 0xA0) && !(first == 0xED && second >= 0xA0) ? 3 : 0;
+  if (first < 0xF0)
+    return continues(2) && !(first == 0xE0 && second < 0xA0) && !(first == 0xED && second >= 0xA0) ? 3 : 0;
   const bool in_range = first <= 0xF4 && !(first == 0xF0 && second < 0x90) && !(first == 0xF4 && second >= 0x90);
   return in_range && continues(2) && continues(3) ? 4 : 0;
 }
 
 bool starts_with_control(std::string_view text) {
   const unsigned char first = byte(text, 0);
-  return !text.empty() && (first < 0x20 || first == 0x7F || (first == 0xC2 && byte(text, 1) >= 0x80 && byte(text, 1) < 0xA0));
+  return !text.empty() &&
+         (first < 0x20 || first == 0x7F || (first == 0xC2 && byte(text, 1) >= 0x80 && byte(text, 1) < 0xA0));
+}
+
+void Findings::add(Finding finding) {
+  if (finding.severity == Severity::error) ++error_count_;
+  findings_.push_back(std::move(finding));
 }
 
 void Findings::error(Place place, std::string what, std::string hint) {
-  findings_.push_back({std::move(place), Severity::error, std::move(what), std::move(hint)});
-  ++error_count_;
+  add({std::move(place), Severity::error, std::move(what), std::move(hint)});
 }
 
 void Findings::warning(Place place, std::string what, std::string hint) {
-  findings_.push_back({std::move(place), Severity::warning, std::move(what), std::move(hint)});
+  add({std::move(place), Severity::warning, std::move(what), std::move(hint)});
 }
 
 void Findings::note(Place place, std::string what, std::string hint) {
-  findings_.push_back({std::move(place), Severity::note, std::move(what), std::move(hint)});
+  add({std::move(place), Severity::note, std::move(what), std::move(hint)});
 }
 
 std::string format(const Finding& finding) {

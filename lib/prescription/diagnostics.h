@@ -20,12 +20,13 @@ enum class Severity { error, warning, note };
 struct Finding {
   Place place;
   Severity severity = Severity::error;
-  std::string what;   // what is wrong, with the value and the legal range
-  std::string hint;   // what to do; empty where there is nothing to add
+  std::string what;  // what is wrong, with the value and the legal range
+  std::string hint;  // what to do; empty where there is nothing to add
 };
 
 class Findings {
  public:
+  void add(Finding finding);
   void error(Place place, std::string what, std::string hint = {});
   void warning(Place place, std::string what, std::string hint = {});
   void note(Place place, std::string what, std::string hint = {});

@@ -67,12 +67,14 @@ class TreeBuilder : public YAML::EventHandler {
 
   void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override { leaf(mark, anchor, YamlNode::Kind::null); }
 
-  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, const std::string& text) override {
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                const std::string& text) override {
     const bool quoted = tag == "!" || tag == "tag:yaml.org,2002:str";
     if (!quoted) refuse_tag(mark, tag);
     for (std::string_view rest = text; !rest.empty(); rest.remove_prefix(1))
       if (starts_with_control(rest) && rest[0] != '\n' && rest[0] != '\t')
-        throw Stop{place(mark), "a control character in '" + excerpt(text) + "'", "leave out the escape sequence that makes it"};
+        throw Stop{place(mark), "a control character in '" + excerpt(text) + "'",
+                   "leave out the escape sequence that makes it"};
     leaf(mark, anchor, YamlNode::Kind::scalar, text, quoted);
   }
 
@@ -83,32 +85,36 @@ class TreeBuilder : public YAML::EventHandler {
     add(found->second, place(mark));
   }
 
-  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, YAML::EmitterStyle::value) override {
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                       YAML::EmitterStyle::value) override {
     open(mark, tag, anchor, YamlNode::Kind::sequence);
   }
-  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, YAML::EmitterStyle::value) override {
+  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value) override {
     open(mark, tag, anchor, YamlNode::Kind::mapping);
   }
   void OnSequenceEnd() override { close(); }
   void OnMapEnd() override { close(); }
 
   void refuse_tag(const YAML::Mark& mark, const std::string& tag) const {
-    if (tag != "?" && tag != "!") throw Stop{place(mark), "the tag '" + excerpt(tag) + "' is not read here", "leave it out"};
+    if (tag != "?" && tag != "!")
+      throw Stop{place(mark), "the tag '" + excerpt(tag) + "' is not read here", "leave it out"};
   }
 
   void count(const YAML::Mark& mark, const Subtree& subtree) {
     node_count_ += subtree.size;
-    if (node_count_ > most_nodes)
-      throw Stop{place(mark), too_many_values, ""};
+    if (node_count_ > most_nodes) throw Stop{place(mark), too_many_values, ""};
     if (open_.size() + subtree.height > most_depth)
       throw Stop{place(mark), "nested more than " + std::to_string(most_depth) + " deep", ""};
   }
 
-  void leaf(const YAML::Mark& mark, YAML::anchor_t anchor, YamlNode::Kind kind, const std::string& text = {}, bool quoted = false) {
+  void leaf(const YAML::Mark& mark, YAML::anchor_t anchor, YamlNode::Kind kind, const std::string& text = {},
+            bool quoted = false) {
     auto node = std::make_shared<YamlNode>();
     node->kind = kind;
     // An empty value stands nowhere; yaml-cpp gives the place of whatever comes next.
-    node->place = kind == YamlNode::Kind::null && !open_.empty() && open_.back().key ? open_.back().key->second : place(mark);
+    node->place =
+        kind == YamlNode::Kind::null && !open_.empty() && open_.back().key ? open_.back().key->second : place(mark);
     node->text = text;
     node->quoted = quoted;
     const Subtree subtree{node};
@@ -155,7 +161,8 @@ class TreeBuilder : public YAML::EventHandler {
       if (is_new)
         parent.node->entries.push_back({std::move(key), std::move(key_place), child.node});
       else
-        repeated_keys.push_back({key_place, "the key '" + excerpt(key) + "' is repeated", "it stands on line " + std::to_string(first->second) + " already"});
+        repeated_keys.push_back({key_place, "the key '" + excerpt(key) + "' is repeated",
+                                 "it stands on line " + std::to_string(first->second) + " already"});
     }
   }
 
@@ -173,12 +180,20 @@ std::string message_of(const YAML::Exception& fault) {
   return fault.msg;
 }
 
+std::string hint_of(const YAML::Exception& fault) {
+  namespace messages = YAML::ErrorMsg;
+  for (const std::string known : {messages::MAP_KEY, messages::MAP_VALUE, messages::BLOCK_ENTRY})
+    if (fault.msg == known) return "a text that holds ': ' needs quotes, and lines are indented with blanks, not tabs";
+  return {};
+}
+
 // The text of the file, at most one byte more than is allowed.
 std::optional<std::string> read_text(const std::string& file, Findings& findings) {
   std::error_code failure;
   const auto status = std::filesystem::status(file, failure);
   if (!std::filesystem::exists(status) || std::filesystem::is_directory(status)) {
-    findings.error({file}, std::filesystem::exists(status) ? "cannot be read: it is a folder" : "there is no such file");
+    findings.error({file},
+                   std::filesystem::exists(status) ? "cannot be read: it is a folder" : "there is no such file");
     return std::nullopt;
   }
   std::ifstream stream(file, std::ios::binary);
@@ -208,8 +223,9 @@ bool is_plain_text(const std::string& file, const std::string& text, Findings& f
     if (length == 0 || (starts_with_control(rest) && !is_blank)) {
       char code[8];
       std::snprintf(code, sizeof code, "0x%02X", static_cast<unsigned>(static_cast<unsigned char>(rest[0])));
-      findings.error({file, line, static_cast<int>(i - line_start) + 1}, std::string("not YAML: the byte ") + code + " is not UTF-8 text",
-                     "save the file as UTF-8");
+      findings.error({file, line, static_cast<int>(i - line_start) + 1},
+                     std::string("not YAML: the byte ") + code + " is no text",
+                     "save the file as UTF-8, without control characters");
       return false;
     }
     i += length;
@@ -244,7 +260,7 @@ YamlNode::Pointer read_yaml(const std::string& file, Findings& findings) {
     findings.error(stop.place, stop.what, stop.hint);
     return nullptr;
   } catch (const YAML::Exception& fault) {
-    findings.error(builder.place(fault.mark), "not YAML: " + message_of(fault));
+    findings.error(builder.place(fault.mark), "not YAML: " + message_of(fault), hint_of(fault));
     return nullptr;
   } catch (const std::exception& fault) {
     findings.error({file}, std::string("not YAML: ") + fault.what());

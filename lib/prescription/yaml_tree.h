@@ -24,10 +24,10 @@ struct YamlNode {
 
   Kind kind = Kind::null;
   Place place;
-  std::string text;              // of a scalar
-  bool quoted = false;           // a quoted scalar is a text even where it looks like a number
-  std::vector<Pointer> items;    // of a sequence
-  std::vector<Entry> entries;    // of a mapping, in the order of the file; repeated keys are reported and kept once
+  std::string text;            // of a scalar
+  bool quoted = false;         // a quoted scalar is a text even where it looks like a number
+  std::vector<Pointer> items;  // of a sequence
+  std::vector<Entry> entries;  // of a mapping, in the order of the file; repeated keys are reported and kept once
 
   // The value of a key of a mapping; null pointer where there is none.
   Pointer find(std::string_view key) const;

@@ -64,8 +64,8 @@ struct Conic {
   Gradient<T> gradient(const T& x, const T& y) const {
     using std::sqrt;
     const T c = curvature;
-    const T over_root = c / sqrt(T(1) - (T(1) + T(conic_constant)) * c * c * (x * x + y * y));
-    return {x * over_root, y * over_root};
+    const T root = sqrt(T(1) - (T(1) + T(conic_constant)) * c * c * (x * x + y * y));
+    return {c * x / root, c * y / root};
   }
 
   template <class T>

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// The main job: every field at every wavelength, traced once, with the analyses that are asked for.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "lib/analysis/spot.h"
+#include "lib/analysis/wavefront.h"
+#include "lib/scene/scene.h"
+#include "lib/trace/pattern.h"
+
+namespace sagitta::analysis {
+
+struct JobRequest {
+  bool want_spot = true;
+  bool want_wavefront = true;
+  trace::Pattern pattern;
+  std::int64_t ray_count = 10000;  // per field and wavelength, at least
+  int spot_image_size = 256;       // pixels a side
+  WavefrontRequest wavefront;
+  int thread_count = 0;            // 0: as many as the machine runs
+};
+
+// The share of the rays reaching a surface that is made of data which land inside the data.
+struct Coverage {
+  int surface_number = 0;
+  double share = 0;  // NaN where no ray reached it
+};
+
+struct JobResult {
+  std::size_t field = 0, wavelength = 0;   // from 0
+  trace::StatusCounts rays;                // of the spot's rays, or of the wavefront's where only that is asked for
+  std::vector<Coverage> coverage;          // of every surface made of data, by the same rays
+  std::optional<Spot> spot;
+  std::optional<SpotImage> spot_image;     // one pixel size for the whole job; centred, for all wavelengths of a field,
+                                           // on the centroid of the first one that has rays
+  std::optional<WavefrontResult> wavefront;
+};
+
+// Results by field, then wavelength. `progress` is called with the done share of the work, in [0, 1], from this thread.
+std::vector<JobResult> run_job(const scene::Scene& scene, const JobRequest& request,
+                               const std::function<void(double)>& progress = {});
+
+}  // namespace sagitta::analysis

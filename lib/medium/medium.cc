@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lib/medium/medium.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace sagitta::medium {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// n = nd + B (1/L^2 - 1/Ld^2): the constant at the d line is the index itself, so nd comes back to the last bit.
+class TwoTermCauchy : public Dispersion {
+ public:
+  static constexpr double line_d_um = 0.5875618;
+
+  TwoTermCauchy(double index_d, double slope_um2) : index_d_(index_d), slope_um2_(slope_um2) {}
+
+  double index(double wavelength_um) const override {
+    return index_d_ + slope_um2_ * (1 / (wavelength_um * wavelength_um) - 1 / (line_d_um * line_d_um));
+  }
+
+ private:
+  double index_d_, slope_um2_;
+};
+
+class Constant : public Dispersion {
+ public:
+  explicit Constant(double index) : index_(index) {}
+  double index(double) const override { return index_; }
+
+ private:
+  double index_;
+};
+
+}  // namespace
+
+double Medium::index(double wavelength_um) const {
+  if (!covers(wavelength_um)) return std::numeric_limits<double>::quiet_NaN();
+  const double index = dispersion->index(wavelength_um);
+  return index > 0 && index < infinity ? index : std::numeric_limits<double>::quiet_NaN();
+}
+
+std::optional<double> wavelength_without_index(const Medium& medium) {
+  constexpr int steps = 1000;
+  const double ratio = medium.longest_um / medium.shortest_um;
+  for (int i = 0; i <= steps; ++i) {
+    const double wavelength_um = medium.shortest_um * std::pow(ratio, double(i) / steps);
+    if (!(medium.index(wavelength_um) > 0)) return wavelength_um;
+  }
+  return std::nullopt;
+}
+
+Medium constant(std::string name, double index) {
+  return {std::move(name), std::make_shared<Constant>(index), 0, infinity};
+}
+
+Medium air() { return constant("air", 1); }
+
+Medium from_nd_vd(double nd, double vd) {
+  constexpr double line_f_um = 0.4861327, line_c_um = 0.6562725;
+  const double slope_um2 = (nd - 1) / vd / (1 / (line_f_um * line_f_um) - 1 / (line_c_um * line_c_um));
+  return {fmt::format("nd {} vd {}", nd, vd), std::make_shared<TwoTermCauchy>(nd, slope_um2), 0, infinity};
+}
+
+}  // namespace sagitta::medium

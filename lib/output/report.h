@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `sagitta trace` says: the results of a job as JSON, table, EXR parts and figures.
+//
+// Part names: spot.fieldI.NMnm and wavefront.fieldI.NMnm, I from 0, NM the wavelength as in the prescription. Channels:
+// Y (ray counts; OPD in waves, NaN where there is none) and wavefront.mask (0 to 5: the ray's status in the order of the
+// contract; 255: outside the pupil). Attributes are named in README.md.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "lib/analysis/job.h"
+#include "lib/output/exr.h"
+#include "lib/output/figure.h"
+#include "lib/output/table.h"
+#include "lib/scene/first_order.h"
+
+namespace sagitta::output {
+
+struct Report {
+  std::string system, version;
+  bool fields_are_heights = false;
+  std::vector<std::array<double, 2>> fields;  // degrees, or mm
+  std::vector<double> wavelengths_nm;
+  std::vector<std::string> surface_names;     // [0] of surface 1
+  scene::FirstOrder first_order;              // at the primary wavelength
+  std::vector<analysis::JobResult> results;
+};
+
+std::string summary_json(const Report& report);
+std::string summary_text(const Report& report);
+
+std::vector<ExrPart> spot_parts(const Report& report);
+std::vector<ExrPart> wavefront_parts(const Report& report);
+Figure spot_figure(const Report& report);
+Figure wavefront_figure(const Report& report);
+
+}  // namespace sagitta::output

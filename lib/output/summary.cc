@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// The results as JSON and as a table.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "lib/output/report.h"
+
+namespace sagitta::output {
+namespace {
+
+using nlohmann::ordered_json;
+using surface::Status;
+
+// A number that does not exist is null: nlohmann writes NaN and infinity so, and every other number with as many digits
+// as bring back its bits.
+ordered_json pupil_json(const scene::Pupil& pupil) {
+  return {{"z_mm", pupil.z}, {"semi_diameter_mm", pupil.semi_diameter}};
+}
+
+ordered_json first_order_json(const scene::FirstOrder& paraxial) {
+  return {{"effective_focal_length_mm", paraxial.effective_focal_length},
+          {"rear_focal_length_mm", paraxial.rear_focal_length},
+          {"back_focal_length_mm", paraxial.back_focal_length},
+          {"entrance_pupil", pupil_json(paraxial.entrance_pupil)},
+          {"exit_pupil", pupil_json(paraxial.exit_pupil)},
+          {"front_focal_length_mm", paraxial.front_focal_length},
+          {"focal_points_z_mm", {paraxial.front_focal_point, paraxial.rear_focal_point}},
+          {"principal_points_z_mm", {paraxial.front_principal_point, paraxial.rear_principal_point}},
+          {"nodal_points_z_mm", {paraxial.front_nodal_point, paraxial.rear_nodal_point}}};
+}
+
+ordered_json rays_json(const trace::StatusCounts& rays) {
+  ordered_json result{{"launched", rays.total()}};
+  for (std::size_t i = 0; i < surface::status_names.size(); ++i) result[std::string(surface::status_names[i])] = rays.of[i];
+  return result;
+}
+
+// Where rays were lost: surface, status, count.
+ordered_json losses_json(const Report& report, const trace::StatusCounts& rays) {
+  ordered_json result = ordered_json::array();
+  for (const auto& [ended, count] : rays.endings)
+    result.push_back({{"surface", ended / 8},
+                      {"name", report.surface_names[static_cast<std::size_t>(ended / 8 - 1)]},
+                      {"status", surface::status_names[static_cast<std::size_t>(ended % 8)]},
+                      {"count", count}});
+  return result;
+}
+
+ordered_json wavefront_json(const analysis::Wavefront& wavefront, double pupil_semi_diameter) {
+  ordered_json result{{"rms_waves", wavefront.rms_waves},
+                      {"peak_to_valley_waves", wavefront.peak_to_valley_waves},
+                      {"zernike", nullptr},
+                      {"samples", wavefront.rays[Status::ok]},
+                      {"reference_sphere_radius_mm", wavefront.reference_radius}};
+  if (wavefront.zernike)
+    result["zernike"] = {{"indexing", "osa"},
+                         {"pupil_semi_diameter_mm", pupil_semi_diameter},
+                         {"coefficients_um", wavefront.zernike->coefficients},
+                         {"residual_rms_um", wavefront.zernike->residual_rms}};
+  return result;
+}
+
+ordered_json result_json(const Report& report, const analysis::JobResult& result) {
+  ordered_json json{{"field", result.field},
+                    {report.fields_are_heights ? "object_height_mm" : "angle_deg", report.fields[result.field]},
+                    {"wavelength_nm", report.wavelengths_nm[result.wavelength]},
+                    {"rays", rays_json(result.rays)},
+                    {"lost", losses_json(report, result.rays)}};
+  if (!result.coverage.empty()) {
+    json["coverage"] = ordered_json::array();
+    for (const auto& coverage : result.coverage)
+      json["coverage"].push_back({{"surface", coverage.surface_number}, {"share", coverage.share}});
+  }
+  if (result.spot)
+    json["spot"] = {{"centroid_mm", {result.spot->centroid_x, result.spot->centroid_y}},
+                    {"rms_radius_mm", result.spot->rms_radius},
+                    {"geometric_radius_mm", result.spot->geometric_radius}};
+  if (result.wavefront) {
+    if (result.wavefront->wavefront) {
+      json["wavefront"] = wavefront_json(*result.wavefront->wavefront, report.first_order.entrance_pupil.semi_diameter);
+    } else {
+      json["wavefront"] = nullptr;
+      json["reason"] = result.wavefront->reason;
+    }
+  }
+  return json;
+}
+
+std::string significant(double value) { return std::isfinite(value) ? fmt::format("{:.5g}", value) : "-"; }
+
+}  // namespace
+
+std::string summary_json(const Report& report) {
+  ordered_json json{{"system", report.system},
+                    {"version", report.version},
+                    {"first_order", first_order_json(report.first_order)},
+                    {"results", ordered_json::array()}};
+  for (const auto& result : report.results) json["results"].push_back(result_json(report, result));
+  return json.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string summary_text(const Report& report) {
+  const bool spots = !report.results.empty() && report.results.front().spot;
+  const bool wavefronts = !report.results.empty() && report.results.front().wavefront;
+  const bool covers = !report.results.empty() && !report.results.front().coverage.empty();
+  Table table;
+  table.columns = {{.name = "field"}, {.name = report.fields_are_heights ? "x" : "x", .unit = report.fields_are_heights ? "mm" : "deg"},
+                   {.name = "y", .unit = report.fields_are_heights ? "mm" : "deg"}, {.name = "wavelength", .unit = "nm"},
+                   {.name = "launched"}, {.name = "ok"}, {.name = "lost"}};
+  if (covers) table.columns.push_back({.name = "coverage", .unit = "%"});
+  if (spots)
+    for (const char* name : {"centroid x", "centroid y", "RMS radius", "geometric"})
+      table.columns.push_back({.name = name, .unit = name[0] == 'c' ? "mm" : "um"});
+  if (wavefronts) {
+    table.columns.push_back({.name = "OPD RMS", .unit = "waves"});
+    table.columns.push_back({.name = "OPD P-V", .unit = "waves"});
+  }
+  std::string remarks;
+  for (const auto& result : report.results) {
+    const auto& field = report.fields[result.field];
+    const std::int64_t launched = result.rays.total(), ok = result.rays[Status::ok];
+    std::vector<std::string> row{std::to_string(result.field), fmt::format("{:g}", field[0]), fmt::format("{:g}", field[1]),
+                                 fmt::format("{:g}", report.wavelengths_nm[result.wavelength]), std::to_string(launched),
+                                 std::to_string(ok), std::to_string(launched - ok)};
+    if (covers) row.push_back(fmt::format("{:.2f}", 100 * result.coverage.front().share));
+    if (result.spot)
+      for (const double value : {result.spot->centroid_x, result.spot->centroid_y, 1e3 * result.spot->rms_radius,
+                                 1e3 * result.spot->geometric_radius})
+        row.push_back(significant(value));
+    if (result.wavefront) {
+      const auto& wavefront = result.wavefront->wavefront;
+      row.push_back(wavefront ? significant(wavefront->rms_waves) : "-");
+      row.push_back(wavefront ? significant(wavefront->peak_to_valley_waves) : "-");
+      if (!wavefront)
+        remarks += fmt::format("no wavefront of field {} at {:g} nm: {}\n", result.field, report.wavelengths_nm[result.wavelength],
+                               result.wavefront->reason);
+    }
+    table.rows.push_back(std::move(row));
+    for (const auto& [ended, count] : result.rays.endings)
+      remarks += fmt::format("field {} at {:g} nm: {} rays {} at surface {} {}\n", result.field,
+                             report.wavelengths_nm[result.wavelength], count,
+                             surface::status_names[static_cast<std::size_t>(ended % 8)], ended / 8,
+                             report.surface_names[static_cast<std::size_t>(ended / 8 - 1)]);
+  }
+  const scene::FirstOrder& paraxial = report.first_order;
+  return fmt::format("{}\neffective focal length {} mm, back focal length {} mm, entrance pupil {} mm wide at z = {} mm\n\n{}{}{}",
+                     printable(report.system), significant(paraxial.effective_focal_length), significant(paraxial.back_focal_length),
+                     significant(2 * paraxial.entrance_pupil.semi_diameter), significant(paraxial.entrance_pupil.z),
+                     to_text(table), remarks.empty() ? "" : "\n", remarks);
+}
+
+}  // namespace sagitta::output

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// What must hold between values that are each legal by themselves.
+#pragma once
+
+#include <vector>
+
+#include "lib/medium/medium.h"
+#include "lib/prescription/diagnostics.h"
+#include "lib/prescription/model.h"
+
+namespace sagitta::prescription {
+
+// A medium and where the prescription names or describes it.
+struct MediumUse {
+  medium::Medium medium;
+  Place place;
+};
+
+// Every wavelength lies in the range of every medium and has a positive index there; image_f_number has an infinite
+// object, object_na and object_heights_mm a finite one; object_na is less than the index of the object's medium. An
+// object distance that could not be read is NaN: nothing is said about it again.
+void check_model(const Model& model, const std::vector<MediumUse>& media, Findings& findings);
+
+}  // namespace sagitta::prescription

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// The keys of a prescription, version 1: one table a mapping. Unknown and missing keys, legal ranges and hints all come
+// from here; the keys of the shapes stand with the shapes (lib/surface/).
+#pragma once
+
+#include <array>
+#include <limits>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "lib/numerics/key.h"
+
+namespace sagitta::prescription {
+
+using KeyTable = std::span<const numerics::Key>;
+
+inline constexpr int prescription_version = 1;
+
+inline constexpr std::array system_keys{
+    numerics::Key{.name = "sagitta",
+                  .meaning = "version of the format, 1",
+                  .required = true,
+                  .range = {prescription_version, prescription_version}},
+    numerics::Key{.name = "name", .kind = numerics::ValueKind::text, .meaning = "name of the system"},
+    numerics::Key{.name = "source", .kind = numerics::ValueKind::text, .meaning = "where the system is published"},
+    numerics::Key{.name = "wavelengths_nm",
+                  .kind = numerics::ValueKind::list,
+                  .meaning = "the wavelengths, in a list",
+                  .required = true,
+                  .range = numerics::positive},
+    numerics::Key{.name = "primary_nm",
+                  .meaning = "wavelength of the first order; the first of wavelengths_nm unless given",
+                  .range = numerics::positive},
+    numerics::Key{.name = "aperture",
+                  .kind = numerics::ValueKind::mapping,
+                  .meaning = "size of the launched beam",
+                  .required = true},
+    numerics::Key{.name = "fields",
+                  .kind = numerics::ValueKind::mapping,
+                  .meaning = "where the light comes from; one field on the axis unless given"},
+    numerics::Key{.name = "object",
+                  .kind = numerics::ValueKind::mapping,
+                  .meaning = "what stands before surface 1; air up to infinity unless given"},
+    numerics::Key{.name = "surfaces",
+                  .kind = numerics::ValueKind::list,
+                  .meaning = "the surfaces in the order of the light; the last one is the image surface",
+                  .required = true}};
+
+// Exactly one of them, in the order of ApertureKind.
+inline constexpr std::array aperture_keys{
+    numerics::Key{.name = "entrance_pupil_diameter_mm",
+                  .meaning = "diameter of the paraxial entrance pupil",
+                  .range = numerics::positive},
+    numerics::Key{.name = "stop_diameter_mm", .meaning = "diameter of the stop", .range = numerics::positive},
+    numerics::Key{.name = "image_f_number",
+                  .meaning = "focal length over entrance pupil diameter; infinite object only",
+                  .range = numerics::positive},
+    numerics::Key{.name = "object_na",
+                  .meaning = "index times sine of the half angle at the object; finite object only",
+                  .range = numerics::positive}};
+
+// Exactly one of them, in the order of FieldKind; a list of pairs [x, y].
+inline constexpr std::array field_keys{
+    numerics::Key{.name = "angles_deg",
+                  .kind = numerics::ValueKind::list,
+                  .meaning = "pairs [x, y] of angles; positive travels toward +x or +y",
+                  .range = {-90, 90, true}},
+    numerics::Key{.name = "object_heights_mm",
+                  .kind = numerics::ValueKind::list,
+                  .meaning = "pairs [x, y] of points in the object plane; finite object only"}};
+
+inline constexpr std::array object_keys{
+    numerics::Key{.name = "distance_mm",
+                  .meaning = "from the object to surface 1; negative for a virtual object",
+                  .range = {.low = std::numeric_limits<double>::lowest(), .zero = false, .infinite = true},
+                  .fallback = std::numeric_limits<double>::infinity()},
+    numerics::Key{
+        .name = "medium", .kind = numerics::ValueKind::medium, .meaning = "medium of the object; air unless given"}};
+
+// The keys of every surface; exactly one shape may stand beside them (none: a plane).
+inline constexpr std::array surface_keys{
+    numerics::Key{.name = "name", .kind = numerics::ValueKind::text, .meaning = "name of the surface"},
+    numerics::Key{
+        .name = "stop", .kind = numerics::ValueKind::flag, .meaning = "true on exactly one surface: the aperture stop"},
+    numerics::Key{.name = "thickness_mm", .meaning = "to the next vertex; on all surfaces but the last"},
+    numerics::Key{
+        .name = "medium",
+        .kind = numerics::ValueKind::medium,
+        .meaning = "what follows the surface: a name, {index: ...}, {nd: ..., vd: ...} or mirror; air unless given"},
+    numerics::Key{.name = "semi_diameter_mm",
+                  .meaning = "rays beyond it are clipped",
+                  .range = numerics::positive,
+                  .fallback = std::numeric_limits<double>::infinity()},
+    numerics::Key{
+        .name = "inner_semi_diameter_mm", .meaning = "rays inside it are clipped", .range = numerics::not_negative},
+    numerics::Key{.name = "decenter_mm",
+                  .kind = numerics::ValueKind::vector3,
+                  .meaning = "[x, y, z] by which the vertex is moved off its place on the axis"},
+    numerics::Key{.name = "tilt_deg",
+                  .kind = numerics::ValueKind::vector3,
+                  .meaning = "[x, y, z] turns about the new x, then the new y, then the new z"}};
+
+// Either index, or nd with vd.
+inline constexpr std::array medium_keys{
+    numerics::Key{.name = "index", .meaning = "refractive index at every wavelength", .range = numerics::positive},
+    numerics::Key{.name = "nd", .meaning = "refractive index at 587.5618 nm", .range = numerics::positive},
+    numerics::Key{.name = "vd", .meaning = "Abbe number", .range = numerics::positive}};
+
+// The shapes of lib/surface/shapes.h.
+struct ShapeKind {
+  std::string_view name;
+  KeyTable keys;
+};
+const std::vector<ShapeKind>& shape_kinds();
+
+}  // namespace sagitta::prescription

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// The media that one prescription names or describes.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "lib/medium/medium.h"
+#include "lib/prescription/check.h"
+#include "lib/prescription/diagnostics.h"
+#include "lib/prescription/yaml_tree.h"
+
+namespace sagitta::prescription {
+
+class MediumReader {
+ public:
+  explicit MediumReader(Findings& findings) : findings_(findings) {}
+
+  struct Read {
+    medium::Medium medium = medium::air();  // air too where there was an error
+    bool is_mirror = false;
+  };
+  // A name, {index: ...}, {nd: ..., vd: ...} or mirror; a null pointer is the default, air.
+  Read read(const YamlNode* node);
+
+  // Every medium that was read, with its place.
+  const std::vector<MediumUse>& uses() const { return uses_; }
+
+ private:
+  medium::Medium read_name(const YamlNode& node);
+  medium::Medium read_inline(const YamlNode& node);
+
+  Findings& findings_;
+  std::map<std::string, medium::Medium> known_;  // a file is read once,
+  std::map<std::string, int> failed_;            // and faults in it are told once, for the use on that line
+  std::vector<MediumUse> uses_;
+};
+
+}  // namespace sagitta::prescription

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lib/prescription/reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include "lib/prescription/check.h"
+#include "lib/prescription/keys.h"
+#include "lib/prescription/medium_reader.h"
+#include "lib/prescription/surface_reader.h"
+#include "lib/prescription/value_reader.h"
+#include "lib/prescription/yaml_tree.h"
+
+namespace sagitta::prescription {
+namespace {
+
+constexpr int most_errors = 100;
+
+// The place of a key in its table, which is the enumerator's value.
+template <class Kind>
+Kind kind_of(const std::string& key, KeyTable table) {
+  const auto found =
+      std::find_if(table.begin(), table.end(), [&](const numerics::Key& one) { return one.name == key; });
+  return static_cast<Kind>(found - table.begin());
+}
+
+// A list that is not empty; its items are read by read_item(item).
+template <class ReadItem>
+void read_list(const YamlNode& node, const std::string& label, const std::string& items, Findings& findings,
+               ReadItem&& read_item) {
+  if (node.kind != YamlNode::Kind::sequence || node.items.empty())
+    refuse(node, label, "a list of " + items, findings);
+  else
+    for (const YamlNode::Pointer& item : node.items) read_item(*item);
+}
+
+std::vector<double> read_wavelengths(const YamlNode& node, Findings& findings) {
+  std::vector<double> wavelengths;
+  std::set<double> seen;
+  read_list(node, "wavelengths_nm", "at least one wavelength", findings, [&](const YamlNode& item) {
+    const auto wavelength = read_number(item, "each of wavelengths_nm", numerics::positive, findings);
+    if (!wavelength) return;
+    if (seen.insert(*wavelength).second)
+      wavelengths.push_back(*wavelength);
+    else
+      findings.error(item.place, fmt::format("the wavelength '{}' is repeated", excerpt(item.text)), "leave it out");
+  });
+  return wavelengths;
+}
+
+Aperture read_aperture(const YamlNode& node, Findings& findings) {
+  const Section section(node, "aperture", aperture_keys, findings);
+  const YamlNode::Entry* given = section.one_of(aperture_keys, true);
+  Aperture aperture;
+  if (!given) return aperture;
+  // A value that is not legal is reported here, and gives no further finding: 0 is less than any index.
+  aperture = {kind_of<ApertureKind>(given->key, aperture_keys), section.number(given->key).value_or(0),
+              given->value->place};
+  return aperture;
+}
+
+Fields read_fields(const YamlNode& node, Findings& findings) {
+  const Section section(node, "fields", field_keys, findings);
+  const YamlNode::Entry* given = section.one_of(field_keys, true);
+  Fields fields;
+  if (!given) return fields;
+  fields = {kind_of<FieldKind>(given->key, field_keys), {}, given->value->place};
+  const numerics::Range& range = field_keys[static_cast<std::size_t>(fields.kind)].range;
+  read_list(*given->value, given->key, "at least one pair [x, y]", findings, [&](const YamlNode& item) {
+    if (const auto xy = read_tuple(item, "each of " + given->key, "xy", range, findings))
+      fields.points.push_back({(*xy)[0], (*xy)[1]});
+  });
+  return fields;
+}
+
+Object read_object(const YamlNode& node, MediumReader& media, Findings& findings) {
+  const Section section(node, "object", object_keys, findings);
+  Object object;
+  object.place = node.place;
+  if (section.find("distance_mm"))
+    object.distance_mm = section.number("distance_mm").value_or(std::numeric_limits<double>::quiet_NaN());
+  const MediumReader::Read before = media.read(section.find("medium"));
+  if (before.is_mirror) refuse(*section.find("medium"), "medium of the object", "a medium", findings);
+  object.medium = before.medium;
+  return object;
+}
+
+Model read_model(const YamlNode& root, const std::string& file, Findings& findings) {
+  const Section section(root, "the prescription", system_keys, findings);
+  MediumReader media(findings);
+  Model model;
+  model.file = file;
+  model.place = root.place;
+  section.number("sagitta");
+  model.name = section.text("name").value_or("");
+  model.source = section.text("source").value_or("");
+  if (const YamlNode* node = section.find("wavelengths_nm")) model.wavelengths_nm = read_wavelengths(*node, findings);
+  model.primary_nm = section.number("primary_nm");
+  if (const YamlNode* node = section.find("aperture")) model.aperture = read_aperture(*node, findings);
+  if (const YamlNode* node = section.find("fields")) model.fields = read_fields(*node, findings);
+  if (const YamlNode* node = section.find("object")) model.object = read_object(*node, media, findings);
+  const std::string folder = std::filesystem::path(file).parent_path().string();
+  if (const YamlNode* node = section.find("surfaces")) model.surfaces = read_surfaces(*node, folder, media, findings);
+  check_model(model, media.uses(), findings);
+  return model;
+}
+
+// The findings in the order of the prescription, up to `most_errors` errors. What is said about another file goes with
+// the note "named here" that follows it and has a place in the prescription.
+Findings in_order(const Findings& findings, const std::string& file) {
+  struct Placed {
+    int line, column;
+    const Finding* finding;
+  };
+  std::vector<Placed> placed;
+  std::pair<int, int> last_own{0, 0};
+  for (auto one = findings.all().rbegin(); one != findings.all().rend(); ++one) {
+    if (one->place.file == file) last_own = {one->place.line, one->place.column};
+    placed.push_back({last_own.first, last_own.second, &*one});
+  }
+  std::reverse(placed.begin(), placed.end());
+  std::stable_sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) {
+    return std::tie(a.line, a.column) < std::tie(b.line, b.column);
+  });
+  Findings ordered;
+  for (const Placed& one : placed) {
+    if (ordered.error_count() == most_errors) break;
+    ordered.add(*one.finding);
+  }
+  if (findings.error_count() > most_errors)
+    ordered.note({file}, fmt::format("and {} more errors", findings.error_count() - most_errors));
+  return ordered;
+}
+
+}  // namespace
+
+ReadResult read_prescription(const std::string& file) {
+  Findings findings;
+  std::optional<Model> model;
+  if (const YamlNode::Pointer root = read_yaml(file, findings)) model = read_model(*root, file, findings);
+  if (findings.has_errors()) model.reset();
+  return {std::move(model), in_order(findings, file)};
+}
+
+}  // namespace sagitta::prescription

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lib/prescription/shape_reader.h"
+
+#include <fmt/format.h>
+
+#include "lib/prescription/cloud_reader.h"
+#include "lib/prescription/search_path.h"
+#include "lib/prescription/value_reader.h"
+
+namespace sagitta::prescription {
+namespace {
+
+using numerics::Key;
+using numerics::ValueKind;
+
+// The index range of a key, which may depend on a choice that was read before it.
+numerics::IndexRange index_range(const Key& key, const Parameters& parameters) {
+  if (!key.indices) return {};
+  const auto choice = parameters.texts.find(key.indexed_by);
+  return choice == parameters.texts.end() ? numerics::IndexRange{} : key.indices(choice->second);
+}
+
+void read_value(const Section& section, const Key& key, Parameters& parameters) {
+  const std::string name(key.name);
+  const YamlNode* node = section.find(key.name);
+  if (node) parameters.places[name] = node->place;
+  switch (key.kind) {
+    case ValueKind::number:
+      parameters.numbers[name] = section.number(key.name).value_or(key.fallback);
+      break;
+    case ValueKind::flag:
+      parameters.numbers[name] = section.flag(key.name).value_or(key.fallback != 0);
+      break;
+    case ValueKind::text:
+    case ValueKind::file:
+      if (const auto text = section.text(key.name))
+        parameters.texts[name] = *text;
+      else if (!node && !key.required)
+        parameters.texts[name] = key.choices.substr(0, key.choices.find('|'));
+      break;
+    case ValueKind::indexed:
+      if (!node) break;
+      if (auto values = read_indexed(*node, name, key.range, index_range(key, parameters), section.findings()))
+        parameters.indexed[name] = *std::move(values);
+      break;
+    case ValueKind::vector3:
+    case ValueKind::medium:
+    case ValueKind::mapping:
+    case ValueKind::list:
+      break;  // no shape has such a key; Parameters could not hold it
+  }
+}
+
+// The points of the file that `key` names; null, with errors, where there are none.
+std::shared_ptr<const PointCloud> read_points(const std::string& key, const std::string& folder,
+                                              const Parameters& parameters, Findings& findings) {
+  const auto name = parameters.texts.find(key);
+  const auto format = parameters.texts.find("format"), axes = parameters.texts.find("axes");
+  if (name == parameters.texts.end() || format == parameters.texts.end() || axes == parameters.texts.end())
+    return nullptr;
+  const Place& place = parameters.places.find(key)->second;
+  const bool osa_axes = axes->second == "osa";
+  if (osa_axes && format->second != "xyz") {
+    findings.error(parameters.places.find("axes")->second,
+                   fmt::format("axes must be local for the format {}, not 'osa'", format->second),
+                   "the format itself tells its axes");
+    return nullptr;
+  }
+  const auto file = find_file(name->second, folder);
+  if (!file) {
+    findings.error(place, fmt::format("there is no file '{}'", excerpt(name->second)),
+                   fmt::format("looked for in {}", fmt::join(search_folders(folder), ", ")));
+    return nullptr;
+  }
+  const std::size_t finding_count = findings.all().size();
+  auto cloud = read_cloud({*file, format->second, osa_axes}, findings);
+  if (findings.all().size() > finding_count) findings.note(place, "named here");
+  return cloud;
+}
+
+}  // namespace
+
+Shape read_shape(const ShapeKind& kind, const YamlNode& node, const std::string& folder, Findings& findings) {
+  const Section section(node, std::string(kind.name), kind.keys, findings);
+  Shape shape{.kind = std::string(kind.name), .parameters = {}, .cloud = nullptr, .place = node.place};
+  for (const Key& key : kind.keys) read_value(section, key, shape.parameters);
+  for (const Key& key : kind.keys)
+    if (key.kind == ValueKind::file)
+      shape.cloud = read_points(std::string(key.name), folder, shape.parameters, findings);
+  return shape;
+}
+
+}  // namespace sagitta::prescription

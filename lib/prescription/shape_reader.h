@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// One shape of a prescription, whatever its kind: its values are read after the shape's own table of keys.
+#pragma once
+
+#include <string>
+
+#include "lib/prescription/diagnostics.h"
+#include "lib/prescription/keys.h"
+#include "lib/prescription/model.h"
+#include "lib/prescription/yaml_tree.h"
+
+namespace sagitta::prescription {
+
+// `folder` is the folder of the prescription, where the files it names are looked for first.
+Shape read_shape(const ShapeKind& kind, const YamlNode& node, const std::string& folder, Findings& findings);
+
+}  // namespace sagitta::prescription

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lib/scene/compile.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace sagitta::scene {
+namespace {
+
+using prescription::Findings;
+using prescription::Model;
+
+double radians(double degrees) { return degrees * (std::numbers::pi / 180); }
+
+Wavelength compile_wavelength(const Model& model, double wavelength_nm, Findings& findings) {
+  const double um = wavelength_nm * 1e-3;
+  Wavelength result{um, {model.object.medium.index(um)}};
+  for (const auto& surface : model.surfaces) {
+    // Behind a mirror is what was before it; behind the image surface nothing is traced.
+    const bool same = surface.is_mirror() || &surface == &model.surfaces.back();
+    const double index = same ? result.index.back() : surface.medium->index(um);
+    if (!(index > 0) || !std::isfinite(index))
+      findings.error(surface.place, fmt::format("the medium has no index at {:g} nm", wavelength_nm));
+    result.index.push_back(index);
+  }
+  return result;
+}
+
+// A shape from its checked parameters, by the closed list of kinds.
+surface::Shape compile_shape(const prescription::Shape& given, numerics::Arena& arena) {
+  surface::Shape result;
+  surface::for_each_shape_kind([&]<class S>(S) {
+    if constexpr (requires { S::from(given.parameters, arena); }) {
+      if (S::kind == given.kind) result = S::from(given.parameters, arena);
+    }
+  });
+  return result;
+}
+
+// Frames: the axis is straight; a surface's vertex stands on it, is moved by decenter, then turned about its new axes.
+void place_surfaces(const Model& model, Scene& scene) {
+  double axis_z = 0;
+  numerics::RigidTransform<double> before;  // global_from_local of the surface before, with z relative to its vertex
+  for (std::size_t i = 0; i < model.surfaces.size(); ++i) {
+    const prescription::Surface& given = model.surfaces[i];
+    Surface& surface = scene.surfaces[i];
+    const double gap = i == 0 ? 0 : model.surfaces[i - 1].thickness_mm;
+    axis_z += gap;
+    surface.axis_z = axis_z;
+    const numerics::RigidTransform<double> axis_from_local{
+        numerics::rotation_about_new_axes(radians(given.tilt_deg.x), radians(given.tilt_deg.y), radians(given.tilt_deg.z)),
+        given.decenter_mm};
+    // Through the axis points of both surfaces, so that a short gap keeps its digits far from the origin.
+    const numerics::RigidTransform<double> shift{{}, {0, 0, -gap}};
+    surface.local_from_previous = axis_from_local.inverse() * (shift * before);
+    surface.centred = surface.local_from_previous.rotation == numerics::Rotation<double>{} &&
+                      surface.local_from_previous.translation.x == 0 && surface.local_from_previous.translation.y == 0;
+    surface.global_from_local = numerics::RigidTransform<double>{{}, {0, 0, axis_z}} * axis_from_local;
+    before = axis_from_local;
+  }
+}
+
+std::vector<Field> compile_fields(const prescription::Fields& given) {
+  std::vector<Field> result;
+  const bool heights = given.kind == prescription::FieldKind::object_heights_mm;
+  for (const auto& point : given.points)
+    result.push_back(heights ? Field{true, point.x, point.y}
+                             : Field{false, std::tan(radians(point.x)), std::tan(radians(point.y))});
+  return result;
+}
+
+// The beam from the aperture, whichever way it is given.
+LaunchPupil compile_pupil(const Model& model, const Scene& scene, const FirstOrder& paraxial, Findings& findings) {
+  using prescription::ApertureKind;
+  const Pupil& entrance = paraxial.entrance_pupil;
+  const double value = model.aperture.value;
+  LaunchPupil result;
+  result.telecentric = !(std::abs(entrance.z) <= 1e12);
+  result.z = entrance.z;
+  switch (model.aperture.kind) {
+    case ApertureKind::entrance_pupil_diameter_mm: result.semi_diameter = value / 2; break;
+    case ApertureKind::stop_diameter_mm: result.semi_diameter = value / 2 * std::abs(entrance.magnification); break;
+    case ApertureKind::image_f_number:
+      result.semi_diameter = std::abs(paraxial.effective_focal_length) / value / 2;
+      if (!std::isfinite(result.semi_diameter))
+        findings.error(model.aperture.place, "image_f_number: the system is afocal and has no focal length",
+                       "give entrance_pupil_diameter_mm");
+      break;
+    case ApertureKind::object_na: {
+      const double sine = value / scene.primary.index[0];
+      result.edge_tangent = sine / std::sqrt((1 - sine) * (1 + sine));
+      result.semi_diameter = std::abs(entrance.z - scene.object.z) * result.edge_tangent;
+      break;
+    }
+  }
+  const bool by_na_and_height = model.aperture.kind == ApertureKind::object_na &&
+                                model.fields.kind == prescription::FieldKind::object_heights_mm;
+  if (result.telecentric && !by_na_and_height)
+    findings.error(model.aperture.place, "the entrance pupil is at infinity: the stop is in the focal plane of the surfaces before it",
+                   "a telecentric beam takes object_na and object_heights_mm");
+  else if (!result.telecentric && !scene.object.at_infinity() && entrance.z == scene.object.z)
+    findings.error(model.object.place, "the object lies in the entrance pupil", "move the object or the stop");
+  return result;
+}
+
+}  // namespace
+
+CompileResult compile(const Model& model) {
+  CompileResult result;
+  Findings& findings = result.findings;
+  Scene scene;
+  scene.surfaces.resize(model.surfaces.size());
+  for (const double nm : model.wavelengths_nm) scene.wavelengths.push_back(compile_wavelength(model, nm, findings));
+  scene.primary = compile_wavelength(model, model.primary_wavelength_nm(), findings);
+  if (findings.has_errors()) return result;
+
+  place_surfaces(model, scene);
+  scene.object.z = -model.object.distance_mm;
+  scene.fields = compile_fields(model.fields);
+  for (std::size_t i = 0; i < model.surfaces.size(); ++i) {
+    const prescription::Surface& given = model.surfaces[i];
+    Surface& surface = scene.surfaces[i];
+    surface.shape = compile_shape(given.shape, scene.arena);
+    surface.mirror = given.is_mirror();
+    surface.image = i + 1 == model.surfaces.size();
+    surface.vertex_curvature = std::visit([](const auto& shape) { return shape.vertex_curvature(); }, surface.shape);
+    surface.semi_diameter = given.semi_diameter_mm;
+    surface.inner_semi_diameter = given.inner_semi_diameter_mm;
+    if (given.stop) scene.stop = static_cast<int>(i) + 1;
+  }
+  if (findings.has_errors()) return result;
+
+  scene.pupil = compile_pupil(model, scene, first_order(scene, scene.primary, 1), findings);
+  result.first_order = first_order(scene, scene.primary,
+                                   scene.pupil.telecentric ? std::numeric_limits<double>::quiet_NaN() : scene.pupil.semi_diameter);
+  if (!findings.has_errors()) result.scene = std::move(scene);
+  return result;
+}
+
+}  // namespace sagitta::scene

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// First-order (paraxial) properties of a scene, in the y-z section and along the undisturbed axis: decenters and tilts
+// of surfaces play no part.
+//
+// The state of a paraxial ray is (y, V), V = n u the optical direction; n is negative in gaps that light crosses toward
+// -z (after an odd number of mirrors), as are their thicknesses t. With c the vertex curvature:
+//   refraction and reflection  V' = V - (n' - n) c y,       transfer  y' = y + (t/n) V                              (1)
+// The product from the first vertex to behind the last acting surface is the matrix [a b; -P d], P the power:
+//   effective focal length 1/P,   rear focal length n'/P,   front focal length -n/P
+//   F' = last vertex + n' a/P,   F = first vertex - n d/P                                                            (2)
+//   H' = F' - n'/P,   H = F + n/P,   N' = F' - n/P,   N = F + n'/P                                                   (3)
+// Pupils: the stop's centre imaged backwards through the surfaces before it, and forwards through the others (its own
+// refraction, if it has any, is behind it).
+// A quantity that does not exist (afocal system, pupil at infinity) is NaN here and null in outputs.
+//
+// Source: Welford, Aberrations of Optical Systems (1986), chapter 3; Hopkins' sign conventions.
+#pragma once
+
+#include "lib/scene/scene.h"
+
+namespace sagitta::scene {
+
+struct Pupil {
+  double z = 0;              // global; infinite: telecentric
+  double semi_diameter = 0;  // of the paraxial image of the stop
+  double magnification = 0;  // semi_diameter per semi-diameter of the stop, signed
+};
+
+struct FirstOrder {
+  double power = 0;  // 1/mm
+  double effective_focal_length, front_focal_length, rear_focal_length, back_focal_length;  // mm
+  double front_focal_point, rear_focal_point, front_principal_point, rear_principal_point, front_nodal_point,
+      rear_nodal_point;    // global z
+  Pupil entrance_pupil, exit_pupil;
+  double image_z;          // of the paraxial image of the axial object point, global; infinite if the image is afocal
+};
+
+// `entrance_pupil_semi_diameter` may be NaN: then the pupils' semi-diameters are.
+FirstOrder first_order(const Scene& scene, const Wavelength& wavelength, double entrance_pupil_semi_diameter);
+
+}  // namespace sagitta::scene

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// The compiled scene: flat numbers in mm and radians, made from a prescription for one job. No YAML, no name, no
+// dispersion formula and no triangulation exists from here on.
+//
+// Surfaces are numbered from 1; surfaces[i] is number i + 1. The last one is the image surface. Gap 0 is the object
+// space, gap i lies behind surface i.
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "lib/numerics/arena.h"
+#include "lib/numerics/rigid_transform.h"
+#include "lib/surface/shapes.h"
+
+namespace sagitta::scene {
+
+using numerics::Vec3;
+
+struct Surface {
+  surface::Shape shape;
+  bool mirror = false;
+  bool image = false;                                   // rays end here, undeflected
+  numerics::RigidTransform<double> local_from_previous;  // from the local frame of the surface before (of the first: global)
+  bool centred = true;                                  // local_from_previous is a shift along z only
+  numerics::RigidTransform<double> global_from_local;
+  double axis_z = 0;                                    // global z of its vertex before decenter
+  double vertex_curvature = 0;                          // 1/mm, y-z section
+  double semi_diameter = std::numeric_limits<double>::infinity();
+  double inner_semi_diameter = 0;
+};
+
+// The indices of all gaps at one wavelength.
+struct Wavelength {
+  double wavelength_um = 0;
+  std::vector<double> index;  // index[i] of gap i, positive
+};
+
+struct Object {
+  double z = -std::numeric_limits<double>::infinity();  // of the object plane, global
+  bool at_infinity() const { return std::isinf(z); }
+};
+
+// A field: the tangents of the chief ray's angles in object space, or a height in the object plane.
+struct Field {
+  bool is_height = false;
+  double x = 0, y = 0;  // tangents, or mm
+};
+
+// How large the beam is, in the form the launch needs.
+struct LaunchPupil {
+  bool telecentric = false;   // the entrance pupil is at infinity: chief rays are parallel to the axis
+  double z = 0;               // of the entrance pupil, global
+  double semi_diameter = 0;   // of the entrance pupil
+  double edge_tangent = 0;    // telecentric only: tangent of the angle of the rim's rays
+};
+
+struct Scene {
+  std::vector<Surface> surfaces;
+  std::vector<Wavelength> wavelengths;
+  Wavelength primary;
+  std::vector<Field> fields;
+  Object object;
+  LaunchPupil pupil;
+  int stop = 1;  // number of the stop surface
+  numerics::Arena arena;
+
+  int surface_count() const { return static_cast<int>(surfaces.size()); }
+  const Surface& surface(int number) const { return surfaces[static_cast<std::size_t>(number - 1)]; }
+};
+
+}  // namespace sagitta::scene

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lib/trace/kernel.h"
+
+#include "lib/surface/refraction.h"
+
+namespace sagitta::trace {
+namespace {
+
+enum class Deflection { none, refract, reflect };
+
+// The surface's plain numbers, read once per block.
+struct Setting {
+  numerics::RigidTransform<double> local_from_previous;
+  double index_before;
+  surface::IndexRatio<double> ratio;
+  double outer_squared, inner_squared;
+  int surface_number;
+};
+
+template <bool centred, Deflection deflection, class Shape>
+void advance_block(const Shape shape, const Setting setting, const RayColumns rays, const int ray_count) {
+#pragma GCC ivdep
+  for (int i = 0; i < ray_count; ++i) {
+    const bool travels = rays.ended[i] == 0;
+    Vec3<double> start{rays.x[i], rays.y[i], rays.z[i]}, d{rays.l[i], rays.m[i], rays.n[i]};
+    const Vec3<double> old_start = start, old_d = d;
+    if constexpr (centred) {
+      start.z += setting.local_from_previous.translation.z;
+    } else {
+      start = setting.local_from_previous * start;
+      d = setting.local_from_previous.rotation * d;
+    }
+
+    const surface::Crossing<double> crossing = shape.meet(start, d);
+    const bool met = crossing.status == Status::ok;
+    const Vec3<double> hit = start + crossing.path * d;
+    const double r_squared = hit.x * hit.x + hit.y * hit.y;
+    const bool open = r_squared <= setting.outer_squared && !(r_squared < setting.inner_squared);
+
+    Vec3<double> out = d;
+    if constexpr (deflection == Deflection::refract)
+      out = surface::refract(d, crossing.normal, crossing.along, setting.ratio);
+    if constexpr (deflection == Deflection::reflect) out = surface::reflect(d, crossing.normal, crossing.along);
+    const bool transmitted = out.x == out.x;  // not NaN
+
+    const Status status = !met           ? crossing.status
+                          : !open        ? Status::clipped
+                          : !transmitted ? Status::total_reflection
+                                         : Status::ok;
+    const std::int32_t end = status == Status::ok ? 0 : ending(setting.surface_number, status);
+    const bool turns = end == 0;
+    rays.x[i] = !travels ? old_start.x : met ? hit.x : start.x;
+    rays.y[i] = !travels ? old_start.y : met ? hit.y : start.y;
+    rays.z[i] = !travels ? old_start.z : met ? hit.z : start.z;
+    rays.l[i] = !travels ? old_d.x : turns ? out.x : d.x;
+    rays.m[i] = !travels ? old_d.y : turns ? out.y : d.y;
+    rays.n[i] = !travels ? old_d.z : turns ? out.z : d.z;
+    rays.opl[i] = travels && met ? rays.opl[i] + setting.index_before * crossing.path : rays.opl[i];
+    rays.ended[i] = travels ? end : rays.ended[i];
+  }
+}
+
+template <bool centred, class Shape>
+void choose_deflection(Deflection deflection, const Shape& shape, const Setting& setting, const RayColumns& rays,
+                       int ray_count) {
+  switch (deflection) {
+    case Deflection::none: return advance_block<centred, Deflection::none>(shape, setting, rays, ray_count);
+    case Deflection::refract: return advance_block<centred, Deflection::refract>(shape, setting, rays, ray_count);
+    case Deflection::reflect: return advance_block<centred, Deflection::reflect>(shape, setting, rays, ray_count);
+  }
+}
+
+}  // namespace
+
+void advance(const scene::Surface& surface, int surface_number, double index_before, double index_after,
+             const RayColumns& rays, int ray_count) {
+  const Setting setting{surface.local_from_previous,
+                        index_before,
+                        surface::IndexRatio<double>::of(index_before, index_after),
+                        surface.semi_diameter * surface.semi_diameter,
+                        surface.inner_semi_diameter * surface.inner_semi_diameter,
+                        surface_number};
+  const Deflection deflection = surface.mirror                                   ? Deflection::reflect
+                                : surface.image || index_before == index_after ? Deflection::none
+                                                                                 : Deflection::refract;
+  std::visit(
+      [&](const auto& shape) {
+        if (surface.centred)
+          choose_deflection<true>(deflection, shape, setting, rays, ray_count);
+        else
+          choose_deflection<false>(deflection, shape, setting, rays, ray_count);
+      },
+      surface.shape);
+}
+
+}  // namespace sagitta::trace

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Patterns of points over the unit disc of the pupil.
+//
+//   hexapolar     the centre and rings of 6, 12, 18, ... points; ring i has the radius sqrt((1 + 3 i^2)/count), so that
+//                 every point stands for the same area
+//   square        the points of a square grid, centred on cells, that lie in the disc
+//   random:SEED   uniform over the disc; the same points for the same seed on every machine
+//   fan_x, fan_y  evenly from -1 to 1 along x or y, rim included
+//
+// Hexapolar and square take the smallest pattern of at least the asked number of points, so the number differs.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "lib/trace/launch.h"
+
+namespace sagitta::trace {
+
+enum class PatternKind { hexapolar, square, random, fan_x, fan_y };
+
+struct Pattern {
+  PatternKind kind = PatternKind::hexapolar;
+  std::uint64_t seed = 0;
+};
+
+// "hexapolar", "square", "random:7", "fan_x", "fan_y"; none for anything else.
+std::optional<Pattern> parse_pattern(std::string_view text);
+
+// at_least >= 1.
+std::vector<PupilPoint> pupil_points(const Pattern& pattern, std::int64_t at_least);
+
+}  // namespace sagitta::trace

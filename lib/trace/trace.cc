@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lib/trace/trace.h"
+
+#include <algorithm>
+#include <atomic>
+#include <thread>
+#include <vector>
+
+#include "lib/trace/kernel.h"
+
+namespace sagitta::trace {
+namespace {
+
+// Eight columns of 256 rays are 15 KB: they stay in the first-level cache from the first surface to the last.
+constexpr std::size_t block_size = 256;
+
+void trace_block(const scene::Scene& scene, const scene::Wavelength& wavelength, RayBatch& rays, std::size_t from) {
+  const int ray_count = static_cast<int>(std::min(block_size, rays.size() - from));
+  for (int number = 1; number <= scene.surface_count(); ++number) {
+    const auto gap = static_cast<std::size_t>(number);
+    advance(scene.surface(number), number, wavelength.index[gap - 1], wavelength.index[gap], rays.columns(from), ray_count);
+  }
+}
+
+}  // namespace
+
+void trace(const scene::Scene& scene, const scene::Wavelength& wavelength, RayBatch& rays, int thread_count) {
+  const std::size_t block_count = (rays.size() + block_size - 1) / block_size;
+  std::atomic<std::size_t> next = 0;
+  const auto work = [&] {
+    for (std::size_t block; (block = next++) < block_count;) trace_block(scene, wavelength, rays, block * block_size);
+  };
+  std::size_t workers = thread_count > 0 ? static_cast<std::size_t>(thread_count) : std::max(1u, std::thread::hardware_concurrency());
+  workers = std::min(workers, (block_count + 3) / 4);  // a thread is worth starting for four blocks or more
+  std::vector<std::jthread> helpers;
+  for (std::size_t i = 1; i < workers; ++i) helpers.emplace_back(work);
+  work();
+}
+
+void trace_surface(const scene::Scene& scene, const scene::Wavelength& wavelength, int surface_number, RayBatch& rays) {
+  const auto gap = static_cast<std::size_t>(surface_number);
+  for (std::size_t from = 0; from < rays.size(); from += block_size)
+    advance(scene.surface(surface_number), surface_number, wavelength.index[gap - 1], wavelength.index[gap],
+            rays.columns(from), static_cast<int>(std::min(block_size, rays.size() - from)));
+}
+
+Vec3<double> global_position(const scene::Scene& scene, int surface_number, const RayBatch& rays, std::size_t ray) {
+  return scene.surface(surface_number).global_from_local * rays.position(ray);
+}
+Vec3<double> global_direction(const scene::Scene& scene, int surface_number, const RayBatch& rays, std::size_t ray) {
+  return scene.surface(surface_number).global_from_local.rotation * rays.direction(ray);
+}
+
+}  // namespace sagitta::trace

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lib/surface/zernike.h"
+
+#include <gtest/gtest.h>
+
+#include <boost/multiprecision/cpp_dec_float.hpp>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lib/numerics/arena.h"
+
+namespace sagitta::surface {
+namespace {
+
+using numerics::ZernikeIndexing;
+using numerics::ZernikeTerm;
+using Real50 = boost::multiprecision::cpp_dec_float_50;
+
+// What Zernike::from asks of parameters.
+struct Given {
+  double radius = INFINITY, K = 0, r0 = 1;
+  std::string indexing = "osa";
+  std::vector<std::pair<int, double>> coefficients{};
+  double number(std::string_view key) const { return key == "radius_mm" ? radius : key == "conic_constant" ? K : r0; }
+  const std::string& text(std::string_view) const { return indexing; }
+  const std::vector<std::pair<int, double>>& list(std::string_view) const { return coefficients; }
+};
+
+Zernike make(const Given& given, numerics::Arena& arena) { return Zernike::from(given, arena); }
+
+// The textbook's power series in 50 digits: independent of the recurrences.
+Real50 radial_by_series(int order, int m, const Real50& rho) {
+  Real50 sum = 0;
+  for (int s = 0; s <= (order - m) / 2; ++s) {
+    Real50 term = s % 2 == 0 ? 1 : -1;
+    for (int i = 2; i <= order - s; ++i) term *= i;
+    for (int i = 2; i <= s; ++i) term /= i;
+    for (int i = 2; i <= (order + m) / 2 - s; ++i) term /= i;
+    for (int i = 2; i <= (order - m) / 2 - s; ++i) term /= i;
+    sum += term * pow(rho, order - 2 * s);
+  }
+  return sum;
+}
+
+// A22. zernike_value with the fringe norm (1) is R cos(m theta); along +x it is R.
+TEST(ZernikeBasis, radial_polynomials_of_order_40_are_right_to_1e_12) {
+  const auto R = [](int order, int m, double rho) {
+    return numerics::zernike_value<double>(ZernikeIndexing::fringe, {order, m}, rho, 0.0);
+  };
+  const std::pair<double, double> spherical[] = {{.3, .15047524183158114198}, {.5, -.04835838106737355701625347137451171875},
+      {.7, .16159966087243646406}, {.9, .081672041590832961662575306196029914082}, {.95, .21559885904881353266},
+      {.99, .09347507764170056877941557550460396681889}};
+  for (const auto& [rho, exact] : spherical) EXPECT_NEAR(R(40, 0, rho), exact, 1e-12) << rho;
+  EXPECT_NEAR(R(40, 2, .7), .1650956655414075094, 1e-12);
+  EXPECT_NEAR(R(40, 20, .7), .067775691603843781127, 1e-12);
+  EXPECT_NEAR(R(40, 38, .95), -.41294764990448726153, 1e-12);
+  EXPECT_NEAR(R(40, 40, .95), std::pow(.95, 40), 1e-14);
+  EXPECT_NEAR(R(39, 1, .7), .16451103124457989123, 1e-12);
+  EXPECT_NEAR(R(40, 0, 1), 1, 1e-12);
+  EXPECT_NEAR(R(40, 0, 0), 1, 1e-14);
+}
+
+TEST(ZernikeBasis, terms_up_to_order_30_agree_with_the_power_series_in_50_digits) {
+  int compared = 0;
+  for (int order = 0; order <= 30; ++order)
+    for (int m = order % 2; m <= order; m += 2)
+      for (const double rho : {0.1, 0.6, 0.97, 1.0}) {
+        const double got = numerics::zernike_value<double>(ZernikeIndexing::fringe, {order, m}, rho, 0.0);
+        EXPECT_NEAR(got, static_cast<double>(radial_by_series(order, m, Real50(rho))), 2e-13) << order << ' ' << m;
+        ++compared;
+      }
+  EXPECT_EQ(compared, 4 * 256);
+}
+
+TEST(ZernikeBasis, indexings_name_the_standard_terms) {
+  using numerics::fringe_term;
+  using numerics::noll_term;
+  using numerics::osa_term;
+  EXPECT_EQ(osa_term(0), (ZernikeTerm{0, 0}));
+  EXPECT_EQ(osa_term(3), (ZernikeTerm{2, -2}));
+  EXPECT_EQ(osa_term(4), (ZernikeTerm{2, 0}));
+  EXPECT_EQ(osa_term(12), (ZernikeTerm{4, 0}));
+  EXPECT_EQ(osa_term(35), (ZernikeTerm{7, 7}));
+  // Noll 1976, table I
+  const ZernikeTerm noll[] = {{0, 0}, {1, 1}, {1, -1}, {2, 0}, {2, -2}, {2, 2}, {3, -1}, {3, 1}, {3, -3}, {3, 3}, {4, 0},
+                              {4, 2}, {4, -2}, {4, 4}, {4, -4}};
+  for (int j = 1; j <= 15; ++j) EXPECT_EQ(noll_term(j), noll[j - 1]) << j;
+  EXPECT_EQ(noll_term(22), (ZernikeTerm{6, 0}));
+  const ZernikeTerm fringe[] = {{0, 0}, {1, 1}, {1, -1}, {2, 0}, {2, 2}, {2, -2}, {3, 1}, {3, -1}, {4, 0}, {3, 3}, {3, -3},
+                                {4, 2}, {4, -2}, {5, 1}, {5, -1}, {6, 0}};
+  for (int j = 1; j <= 16; ++j) EXPECT_EQ(fringe_term(j), fringe[j - 1]) << j;
+  EXPECT_EQ(fringe_term(36), (ZernikeTerm{10, 0}));
+  EXPECT_EQ(fringe_term(37), (ZernikeTerm{12, 0}));
+}
+
+// Every pair (n, m) of the first orders appears once: no index is lost or doubled.
+TEST(ZernikeBasis, osa_and_noll_list_the_same_terms_order_by_order) {
+  for (int order = 0; order <= 20; ++order) {
+    std::vector<int> from_osa, from_noll;
+    for (int i = order * (order + 1) / 2; i < (order + 1) * (order + 2) / 2; ++i) {
+      EXPECT_EQ(numerics::osa_term(i).n, order);
+      EXPECT_EQ(numerics::noll_term(i + 1).n, order);
+      from_osa.push_back(numerics::osa_term(i).m);
+      from_noll.push_back(numerics::noll_term(i + 1).m);
+    }
+    std::sort(from_noll.begin(), from_noll.end());
+    EXPECT_EQ(from_osa, from_noll);
+  }
+}
+
+TEST(ZernikeSurface, value_is_the_sum_of_its_terms) {
+  numerics::Arena arena;
+  Given given{.radius = 7.72, .K = -0.26, .r0 = 3};
+  for (int j = 0; j < 45; ++j) given.coefficients.push_back({j, std::sin(j + 1.0)});
+  const Zernike surface = make(given, arena);
+  for (const auto& [x, y] : {std::pair{0.0, 0.0}, {1.0, -0.5}, {-2.1, 1.9}, {3.5, 0.4}}) {
+    double sum = Conic{1 / 7.72, -0.26}.sag(x, y);
+    for (const auto& [j, um] : given.coefficients)
+      sum += 1e-3 * um * numerics::zernike_value<double>(ZernikeIndexing::osa, numerics::osa_term(j), x / 3, y / 3);
+    EXPECT_NEAR(surface.sag(x, y), sum, 1e-15 * 200);  // 45 terms of at most 1e-3 * 10, each within a few eps, and the base
+  }
+}
+
+TEST(ZernikeSurface, gradient_agrees_with_50_digit_differences) {
+  numerics::Arena arena;
+  Given given{.radius = 7.72, .K = -0.26, .r0 = 3};
+  for (int j = 0; j < 861; ++j) given.coefficients.push_back({j, 0.01 * std::sin(j + 1.0)});  // order 40
+  const Zernike surface = make(given, arena);
+  const Real50 h("1e-15");
+  for (const auto& [x, y] : {std::pair{0.0, 0.0}, {1.0, -0.5}, {-2.0, 1.9}, {2.9, 0.0}}) {
+    const Real50 X(x), Y(y);
+    const auto difference_x = static_cast<double>((surface.sag<Real50>(X + h, Y) - surface.sag<Real50>(X - h, Y)) / (2 * h));
+    const auto difference_y = static_cast<double>((surface.sag<Real50>(X, Y + h) - surface.sag<Real50>(X, Y - h)) / (2 * h));
+    // derivatives grow like order^2 times the terms; 861 terms of 1e-5 mm, order 40, /3 mm: 5 mm/mm, eps of it times 40
+    EXPECT_NEAR(surface.gradient(x, y).x, difference_x, 5e-14);
+    EXPECT_NEAR(surface.gradient(x, y).y, difference_y, 5e-14);
+  }
+}
+
+TEST(ZernikeSurface, without_terms_it_is_the_conic) {
+  numerics::Arena arena;
+  const Zernike surface = make({.radius = 7.72, .K = -0.26, .r0 = 3}, arena);
+  const Vec3<double> p{1, 0.5, -2}, d = normalized(Vec3<double>{0.1, 0.05, 1});
+  // one Newton step of a few roundings of the distance (2.3 mm) may be left
+  EXPECT_NEAR(surface.meet(p, d).path, surface.base.meet(p, d).path, 4 * 2.3e-16 * 2.3);
+}
+
+// Z_4 (osa) = sqrt(3) (2 rho^2 - 1): a defocus term on a plane is the paraboloid of the same curvature, moved.
+TEST(ZernikeSurface, defocus_on_a_plane_is_a_paraboloid) {
+  numerics::Arena arena;
+  const double r0 = 3, um = 100, c = 4 * std::sqrt(3.0) * um * 1e-3 / (r0 * r0);
+  const Zernike surface = make({.r0 = r0, .coefficients = {{4, um}}}, arena);
+  const Conic paraboloid{c, -1};
+  const Vec3<double> p{1, -2, -4}, d = normalized(Vec3<double>{0.2, 0.3, 1});
+  const double lift = std::sqrt(3.0) * um * 1e-3;  // the vertex lies at -lift
+  const Vec3<double> p_from_vertex{p.x, p.y, p.z + lift};
+  EXPECT_NEAR(surface.meet(p, d).path, paraboloid.meet(p_from_vertex, d).path, 1e-14);
+  EXPECT_NEAR(surface.vertex_curvature(), c, 1e-16);
+}
+
+TEST(ZernikeSurface, vertex_curvature_takes_in_the_terms_of_the_yz_section) {
+  numerics::Arena arena;
+  Given given{.radius = -50, .K = 2, .r0 = 2.5};
+  for (int j = 0; j < 66; ++j) given.coefficients.push_back({j, 0.3 * std::cos(2.0 * j)});
+  const Zernike surface = make(given, arena);
+  const Real50 h("1e-12");
+  const Real50 second = (surface.sag<Real50>(0, h) - 2 * surface.sag<Real50>(0, 0) + surface.sag<Real50>(0, -h)) / (h * h);
+  EXPECT_NEAR(surface.vertex_curvature(), static_cast<double>(second), 1e-13);
+}
+
+TEST(ZernikeSurface, wild_surface_ends_in_a_hit_on_it_or_in_a_status) {
+  numerics::Arena arena;
+  // 0.5 mm of a high order on a cornea: slopes beyond 45 degrees, folds along tilted rays
+  const Zernike surface = make({.radius = 7.72, .K = -0.26, .r0 = 3, .coefficients = {{230, 150}, {24, 200}}}, arena);
+  int hits = 0, lost = 0;
+  for (int i = -40; i <= 40; ++i)
+    for (int k = -40; k <= 40; ++k) {
+      const Vec3<double> p{0.07 * i, 0.07 * k, -3}, d = normalized(Vec3<double>{0.3, -0.01 * k, 1});
+      const auto crossing = surface.meet(p, d);
+      if (crossing.status != Status::ok) {
+        ++lost;
+        EXPECT_TRUE(std::isnan(crossing.path));
+        continue;
+      }
+      ++hits;
+      const Vec3<double> hit = p + crossing.path * d;
+      const auto slope = surface.gradient(hit.x, hit.y);
+      // on the surface within the rounding of its terms, times the slope
+      EXPECT_NEAR(hit.z, surface.sag(hit.x, hit.y), 1e-13 * (1 + std::abs(slope.x) + std::abs(slope.y)));
+    }
+  EXPECT_EQ(hits + lost, 81 * 81);
+  EXPECT_GT(hits, 4000);
+}
+
+}  // namespace
+}  // namespace sagitta::surface

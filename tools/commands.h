@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// The program's commands: what the command line gives each, and what it does. Each is one file, NAME_command.cc, and
+// returns the exit status: 0 done; 1 the input is wrong, or not one ray arrived; 2 wrong usage.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace sagitta::tools {
+
+struct TraceOptions {
+  std::string system, folder;
+  std::vector<std::string> only;  // of "spot", "wavefront"; empty: both
+  std::int64_t ray_count = 10000;
+  std::string pattern = "hexapolar";
+  int thread_count = 0;
+  bool json = false;
+};
+int trace_command(const TraceOptions& options);
+
+struct RaysOptions {
+  std::string system;
+  std::vector<std::string> pupil;  // "px,py"
+  std::string fan;                 // "x:21" or "y:21"
+  std::string from;                // a CSV file of rays
+  std::optional<int> field;
+  std::optional<double> wavelength_nm;
+};
+int rays_command(const RaysOptions& options);
+
+struct CheckOptions {
+  std::string system;
+};
+int check_command(const CheckOptions& options);
+
+}  // namespace sagitta::tools

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// What every command begins with: read the prescription and print what there is to say about it.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "lib/prescription/model.h"
+#include "lib/scene/compile.h"
+
+namespace sagitta::tools {
+
+// None, after printing every finding to standard error, where there is an error.
+std::optional<prescription::Model> load_model(const std::string& file);
+std::optional<scene::CompileResult> load_scene(const prescription::Model& model);
+
+// Prints the findings to standard error; false where there is an error among them.
+bool report(const prescription::Findings& findings);
+
+}  // namespace sagitta::tools

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+// sagitta rays SYSTEM.yaml: real rays, surface by surface, as CSV.
+#include <fmt/core.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <optional>
+#include <span>
+
+#include "lib/trace/pattern.h"
+#include "lib/trace/trace.h"
+#include "tools/commands.h"
+#include "tools/given_rays.h"
+#include "tools/load.h"
+
+namespace sagitta::tools {
+namespace {
+
+using numerics::Vec3;
+using trace::PupilPoint;
+using trace::RayBatch;
+
+// "0.5,-1" as a point of the unit disc.
+std::optional<PupilPoint> parse_pupil_point(const std::string& text) {
+  PupilPoint point;
+  const char* const end = text.data() + text.size();
+  const auto [comma, fault] = std::from_chars(text.data(), end, point.x);
+  if (fault != std::errc{} || comma == end || *comma != ',') return std::nullopt;
+  const auto [rest, second_fault] = std::from_chars(comma + 1, end, point.y);
+  if (second_fault != std::errc{} || rest != end) return std::nullopt;
+  if (!(std::abs(point.x) <= 1) || !(std::abs(point.y) <= 1)) return std::nullopt;
+  return point;
+}
+
+struct PupilRequest {
+  std::vector<PupilPoint> points;
+  std::string fault;
+};
+
+PupilRequest requested_pupil(const RaysOptions& options) {
+  PupilRequest result;
+  if (!options.fan.empty()) {
+    int count = 0;
+    const std::string_view text = options.fan;
+    const bool along = text.starts_with("x:") || text.starts_with("y:");
+    const auto [end, fault] = std::from_chars(text.data() + std::min<std::size_t>(2, text.size()), text.data() + text.size(), count);
+    if (!along || fault != std::errc{} || end != text.data() + text.size() || !(count >= 1 && count <= 1000000))
+      result.fault = fmt::format("--fan {}: expected x:COUNT or y:COUNT with COUNT from 1 to 1000000, such as y:21", options.fan);
+    else
+      result.points = trace::pupil_points({text[0] == 'x' ? trace::PatternKind::fan_x : trace::PatternKind::fan_y}, count);
+    return result;
+  }
+  for (const std::string& text : options.pupil) {
+    const auto point = parse_pupil_point(text);
+    if (!point) {
+      result.fault = fmt::format("--pupil {}: expected PX,PY with each from -1 to 1, such as 0,1", text);
+      return result;
+    }
+    result.points.push_back(*point);
+  }
+  if (result.points.empty()) result.points.push_back({0, 0});
+  return result;
+}
+
+std::string quoted(const std::string& name) {
+  if (name.find_first_of(",\"\r\n") == std::string::npos) return name;
+  std::string result = "\"";
+  for (const char c : name) result += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return result + '"';
+}
+
+class Listing {
+ public:
+  Listing(const prescription::Model& model, const scene::Scene& scene) : scene_(scene) {
+    for (const auto& surface : model.surfaces) names_.push_back(quoted(surface.name));
+    fmt::print("ray,field,wavelength_nm,surface,name,x_mm,y_mm,z_mm,l,m,n,opl_mm,status\n");
+  }
+
+  // Traces the rays and prints a row for each ray and surface. numbers[i] is the number of ray i.
+  void print(RayBatch rays, std::size_t field, double wavelength_nm, const scene::Wavelength& wavelength,
+             std::span<const std::size_t> numbers) {
+    std::vector<std::string> rows(rays.size());
+    for (int surface = 1; surface <= scene_.surface_count(); ++surface) {
+      std::vector<bool> travelled(rays.size());
+      for (std::size_t i = 0; i < rays.size(); ++i) travelled[i] = rays.ended[i] == 0;
+      trace_surface(scene_, wavelength, surface, rays);
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        if (!travelled[i]) continue;
+        const Vec3<double> p = global_position(scene_, surface, rays, i), d = global_direction(scene_, surface, rays, i);
+        fmt::format_to(std::back_inserter(rows[i]),
+                       "{},{},{:.17g},{},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{}\n", numbers[i], field,
+                       wavelength_nm, surface, names_[static_cast<std::size_t>(surface - 1)], p.x, p.y, p.z, d.x, d.y, d.z,
+                       rays.optical_path_length(i), surface::status_names[static_cast<std::size_t>(rays.status(i))]);
+      }
+    }
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      std::fputs(rows[i].c_str(), stdout);
+      any_arrived_ = any_arrived_ || rays.ended[i] == 0;
+    }
+  }
+  bool any_arrived() const { return any_arrived_; }
+
+ private:
+  const scene::Scene& scene_;
+  std::vector<std::string> names_;
+  bool any_arrived_ = false;
+};
+
+int print_launched(const RaysOptions& options, prescription::Model model, std::span<const PupilPoint> pupil) {
+  if (options.wavelength_nm && !set_wavelengths(model, {*options.wavelength_nm}, "--wavelength")) return 1;
+  const auto compiled = load_scene(model);
+  if (!compiled) return 1;
+  const scene::Scene& scene = *compiled->scene;
+  if (options.field && !(*options.field >= 0 && static_cast<std::size_t>(*options.field) < scene.fields.size())) {
+    fmt::print(stderr, "sagitta rays: --field {}: the system has the fields 0 to {}\n", *options.field, scene.fields.size() - 1);
+    return 2;
+  }
+  Listing listing(model, scene);
+  std::size_t number = 0;
+  for (std::size_t field = 0; field < scene.fields.size(); ++field) {
+    if (options.field && field != static_cast<std::size_t>(*options.field)) continue;
+    for (std::size_t w = 0; w < scene.wavelengths.size(); ++w) {
+      std::vector<std::size_t> numbers(pupil.size());
+      for (std::size_t& one : numbers) one = ++number;
+      listing.print(launch(scene, scene.fields[field], scene.wavelengths[w].index.front(), pupil), field,
+                    model.wavelengths_nm[w], scene.wavelengths[w], numbers);
+    }
+  }
+  return listing.any_arrived() ? 0 : 1;
+}
+
+// Runs of rays of one wavelength go together, so the listing keeps the order of the file.
+int print_given(const RaysOptions& options, prescription::Model model) {
+  const double wavelength_nm = options.wavelength_nm.value_or(model.primary_wavelength_nm());
+  prescription::Findings findings;
+  const std::vector<GivenRay> given = read_given_rays(options.from, wavelength_nm, findings);
+  if (!report(findings)) return 1;
+  std::vector<double> wavelengths;
+  for (const GivenRay& ray : given)
+    if (std::find(wavelengths.begin(), wavelengths.end(), ray.wavelength_nm) == wavelengths.end())
+      wavelengths.push_back(ray.wavelength_nm);
+  if (!set_wavelengths(model, wavelengths, options.from)) return 1;
+  const auto compiled = load_scene(model);
+  if (!compiled) return 1;
+
+  constexpr std::size_t most_at_once = 4096;
+  Listing listing(model, *compiled->scene);
+  for (std::size_t from = 0, to = 0; from < given.size(); from = to) {
+    const double nm = given[from].wavelength_nm;
+    while (to < given.size() && to - from < most_at_once && given[to].wavelength_nm == nm) ++to;
+    RayBatch rays(to - from);
+    std::vector<std::size_t> numbers;
+    for (std::size_t i = from; i < to; ++i) {
+      rays.set(i - from, given[i].position, given[i].direction, 0);
+      numbers.push_back(i + 1);
+    }
+    const auto w = static_cast<std::size_t>(std::find(wavelengths.begin(), wavelengths.end(), nm) - wavelengths.begin());
+    listing.print(std::move(rays), 0, nm, compiled->scene->wavelengths[w], numbers);
+  }
+  return listing.any_arrived() ? 0 : 1;
+}
+
+}  // namespace
+
+int rays_command(const RaysOptions& options) {
+  const PupilRequest pupil = requested_pupil(options);
+  if (!pupil.fault.empty()) {
+    fmt::print(stderr, "sagitta rays: {}\n", pupil.fault);
+    return 2;
+  }
+  auto model = load_model(options.system);
+  if (!model) return 1;
+  return options.from.empty() ? print_launched(options, std::move(*model), pupil.points) : print_given(options, std::move(*model));
+}
+
+}  // namespace sagitta::tools

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// The program: the command line in, one command out.
+#include <CLI/CLI.hpp>
+
+#include "tools/commands.h"
+
+namespace {
+
+using namespace sagitta::tools;
+
+constexpr const char* usage_status = R"(Exit status: 0 done; 1 the input is wrong, or not one ray arrived; 2 wrong usage.
+Results go to standard output or the output folder, messages to standard error.)";
+
+void add_trace(CLI::App& app, int& status) {
+  static TraceOptions options;
+  CLI::App* command = app.add_subcommand("trace", "Trace every field and wavelength: spots, wavefronts, pictures, summary");
+  command->add_option("SYSTEM", options.system, "prescription (YAML)")->required();
+  command->add_option("-o,--output", options.folder,
+                      "folder for spot.exr, spot.png, wavefront.exr, wavefront.png and summary.json")->required();
+  command->add_option("--only", options.only, "spot, wavefront, or both separated by a comma (default: both)")
+      ->delimiter(',')->check(CLI::IsMember({"spot", "wavefront"}));
+  command->add_option("--rays", options.ray_count, "rays per field and wavelength, at least (the exact number: 'launched')")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1000000000}))->capture_default_str();
+  command->add_option("--pattern", options.pattern, "hexapolar, square, random:SEED, fan_x or fan_y")->capture_default_str();
+  command->add_option("--threads", options.thread_count, "threads (default: as many as the machine runs)")
+      ->check(CLI::Range(1, 1024));
+  command->add_flag("--json", options.json, "print the summary as JSON in place of the table");
+  command->callback([&status] { status = trace_command(options); });
+}
+
+void add_rays(CLI::App& app, int& status) {
+  static RaysOptions options;
+  CLI::App* command = app.add_subcommand("rays", "Real rays, surface by surface, as CSV");
+  command->add_option("SYSTEM", options.system, "prescription (YAML)")->required();
+  auto* pupil = command->add_option("--pupil", options.pupil, "pupil points PX,PY in the unit disc (default: 0,0, the chief ray)");
+  auto* fan = command->add_option("--fan", options.fan, "x:21 or y:21, so many rays evenly across the pupil");
+  auto* from = command->add_option("--from", options.from,
+      "CSV file of given rays: x_mm,y_mm,z_mm,l,m,n[,wavelength_nm], global frame, direction cosines");
+  auto* field = command->add_option("--field", options.field, "number of the field, from 0 (default: all)");
+  command->add_option("--wavelength", options.wavelength_nm, "wavelength in nm (default: all of the system; with --from, the primary one)");
+  pupil->excludes(from);
+  fan->excludes(from)->excludes(pupil);
+  field->excludes(from);
+  command->callback([&status] { status = rays_command(options); });
+}
+
+void add_check(CLI::App& app, int& status) {
+  static CheckOptions options;
+  CLI::App* command = app.add_subcommand("check", "Read and check a prescription and every file it names");
+  command->add_option("SYSTEM", options.system, "prescription (YAML)")->required();
+  command->callback([&status] { status = check_command(options); });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Sagitta: sequential ray tracing of eyes and lenses, from a text file to spots and wavefronts.", "sagitta"};
+  app.set_version_flag("--version", "sagitta " SAGITTA_VERSION);
+  app.footer(usage_status);
+  app.require_subcommand(1);
+  int status = 0;
+  add_trace(app, status);
+  add_rays(app, status);
+  add_check(app, status);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& fault) {
+    return app.exit(fault) == 0 ? 0 : 2;
+  }
+  return status;
+}
