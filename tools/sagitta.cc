@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The program: the command line in, one command out.
 #include <CLI/CLI.hpp>
+#include <csignal>
 
 #include "tools/commands.h"
 
@@ -54,6 +55,7 @@ void add_check(CLI::App& app, int& status) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is an error to report, not a reason to die
   CLI::App app{"Sagitta: sequential ray tracing of eyes and lenses, from a text file to spots and wavefronts.", "sagitta"};
   app.set_version_flag("--version", "sagitta " SAGITTA_VERSION);
   app.footer(usage_status);

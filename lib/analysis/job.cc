@@ -77,7 +77,7 @@ void draw_spots(const scene::Scene& scene, const JobRequest& request, const std:
 }  // namespace
 
 std::vector<JobResult> run_job(const scene::Scene& scene, const JobRequest& request,
-                               const std::function<void(double)>& progress) {
+                               const std::function<void()>& one_done) {
   std::vector<trace::PupilPoint> pupil;
   if (request.want_spot) pupil = trace::pupil_points(request.pattern, request.ray_count);
   WavefrontRequest wavefront_request = request.wavefront;
@@ -85,7 +85,6 @@ std::vector<JobResult> run_job(const scene::Scene& scene, const JobRequest& requ
 
   std::vector<JobResult> results;
   std::vector<trace::RayBatch> batches;  // kept until the common scale of the spot images is known
-  const std::size_t result_count = scene.fields.size() * scene.wavelengths.size();
   for (std::size_t field = 0; field < scene.fields.size(); ++field)
     for (std::size_t w = 0; w < scene.wavelengths.size(); ++w) {
       const scene::Wavelength& wavelength = scene.wavelengths[w];
@@ -105,7 +104,7 @@ std::vector<JobResult> run_job(const scene::Scene& scene, const JobRequest& requ
       }
       result.coverage = coverage_of(scene, result.rays);
       results.push_back(std::move(result));
-      if (progress) progress(static_cast<double>(results.size()) / static_cast<double>(result_count));
+      if (one_done) one_done();
     }
   if (request.want_spot) draw_spots(scene, request, batches, results);
   return results;

@@ -40,8 +40,8 @@ struct JobResult {
   std::optional<WavefrontResult> wavefront;
 };
 
-// Results by field, then wavelength. `progress` is called with the done share of the work, in [0, 1], from this thread.
+// Results by field, then wavelength. `one_done` is called after each, from this thread.
 std::vector<JobResult> run_job(const scene::Scene& scene, const JobRequest& request,
-                               const std::function<void(double)>& progress = {});
+                               const std::function<void()>& one_done = {});
 
 }  // namespace sagitta::analysis

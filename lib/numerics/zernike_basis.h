@@ -22,6 +22,8 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "lib/numerics/key.h"
+
 namespace sagitta::numerics {
 
 enum class ZernikeIndexing { osa, noll, fringe };
@@ -35,6 +37,9 @@ constexpr int first_zernike_index(ZernikeIndexing indexing) { return indexing ==
 // Orders up to 100: beyond it nobody has a use, and tables would grow without bound.
 constexpr int last_zernike_index(ZernikeIndexing indexing) {
   return indexing == ZernikeIndexing::osa ? 5150 : indexing == ZernikeIndexing::noll ? 5151 : 37;
+}
+constexpr IndexRange zernike_index_range(std::string_view indexing) {
+  return {first_zernike_index(zernike_indexing(indexing)), last_zernike_index(zernike_indexing(indexing))};
 }
 
 // A term of (1): radial order n, azimuthal order m (negative: sine).

@@ -3,8 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "lib/scene/cloud_fit.h"
+#include "lib/scene/triangulate.h"
 
 namespace sagitta::scene {
 namespace {
@@ -15,7 +19,7 @@ using prescription::Model;
 double radians(double degrees) { return degrees * (std::numbers::pi / 180); }
 
 Wavelength compile_wavelength(const Model& model, double wavelength_nm, Findings& findings) {
-  const double um = wavelength_nm * 1e-3;
+  const double um = wavelength_nm / 1000;
   Wavelength result{um, {model.object.medium.index(um)}};
   for (const auto& surface : model.surfaces) {
     // Behind a mirror is what was before it; behind the image surface nothing is traced.
@@ -28,8 +32,18 @@ Wavelength compile_wavelength(const Model& model, double wavelength_nm, Findings
   return result;
 }
 
+// A shape made of points. Its vertex curvature follows when the beam is known (fit_curvatures).
+surface::Shape compile_cloud(const prescription::Shape& given, numerics::Arena& arena, Findings& findings) {
+  Triangulation made = triangulate(*given.cloud, given.parameters.number("max_edge_mm"));
+  for (const auto& finding : made.findings.all()) findings.add(finding);
+  if (!made.findings.all().empty()) findings.note(given.place, "named here");
+  if (!made.mesh) return {};
+  return surface::Facets{&arena.keep_shared(made.mesh).mesh};
+}
+
 // A shape from its checked parameters, by the closed list of kinds.
-surface::Shape compile_shape(const prescription::Shape& given, numerics::Arena& arena) {
+surface::Shape compile_shape(const prescription::Shape& given, numerics::Arena& arena, Findings& findings) {
+  if (given.cloud) return compile_cloud(given, arena, findings);
   surface::Shape result;
   surface::for_each_shape_kind([&]<class S>(S) {
     if constexpr (requires { S::from(given.parameters, arena); }) {
@@ -105,6 +119,26 @@ LaunchPupil compile_pupil(const Model& model, const Scene& scene, const FirstOrd
   return result;
 }
 
+// Vertex curvatures. Those of point clouds are fitted over the beam, and the beam may depend on them (stop_diameter_mm,
+// image_f_number): a first round takes the least beam, the second the beam that follows from it.
+void set_vertex_curvatures(const Model& model, Scene& scene) {
+  const auto set = [&](auto&& beam_radius) {
+    for (int number = 1; number <= scene.surface_count(); ++number) {
+      Surface& surface = scene.surfaces[static_cast<std::size_t>(number - 1)];
+      const auto& cloud = model.surfaces[static_cast<std::size_t>(number - 1)].shape.cloud;
+      if (cloud) std::get<surface::Facets>(surface.shape).curvature = vertex_curvature(*cloud, beam_radius(number));
+      surface.vertex_curvature = std::visit([](const auto& shape) { return shape.vertex_curvature(); }, surface.shape);
+    }
+  };
+  set([](int) { return 0.0; });
+  if (std::none_of(model.surfaces.begin(), model.surfaces.end(), [](const auto& surface) { return surface.shape.cloud; })) return;
+  Findings told_later;
+  FirstOrder paraxial = first_order(scene, scene.primary, 1);
+  paraxial.entrance_pupil.semi_diameter = compile_pupil(model, scene, paraxial, told_later).semi_diameter;
+  const Scene before = scene;
+  set([&](int number) { return marginal_height(before, before.primary, paraxial.entrance_pupil, number); });
+}
+
 }  // namespace
 
 CompileResult compile(const Model& model) {
@@ -122,16 +156,16 @@ CompileResult compile(const Model& model) {
   for (std::size_t i = 0; i < model.surfaces.size(); ++i) {
     const prescription::Surface& given = model.surfaces[i];
     Surface& surface = scene.surfaces[i];
-    surface.shape = compile_shape(given.shape, scene.arena);
+    surface.shape = compile_shape(given.shape, scene.arena, findings);
     surface.mirror = given.is_mirror();
     surface.image = i + 1 == model.surfaces.size();
-    surface.vertex_curvature = std::visit([](const auto& shape) { return shape.vertex_curvature(); }, surface.shape);
     surface.semi_diameter = given.semi_diameter_mm;
     surface.inner_semi_diameter = given.inner_semi_diameter_mm;
     if (given.stop) scene.stop = static_cast<int>(i) + 1;
   }
   if (findings.has_errors()) return result;
 
+  set_vertex_curvatures(model, scene);
   scene.pupil = compile_pupil(model, scene, first_order(scene, scene.primary, 1), findings);
   result.first_order = first_order(scene, scene.primary,
                                    scene.pupil.telecentric ? std::numeric_limits<double>::quiet_NaN() : scene.pupil.semi_diameter);

@@ -104,4 +104,14 @@ FirstOrder first_order(const Scene& scene, const Wavelength& wavelength, double 
   return result;
 }
 
+double marginal_height(const Scene& scene, const Wavelength& wavelength, const Pupil& entrance_pupil, int surface_number) {
+  const Paraxial paraxial(scene, wavelength);
+  ParaxialRay ray{entrance_pupil.semi_diameter, 0};
+  if (!scene.object.at_infinity()) {
+    const double slope = entrance_pupil.semi_diameter / (entrance_pupil.z - scene.object.z);
+    ray = {slope * (scene.surface(1).axis_z - scene.object.z), slope * paraxial.index(0)};
+  }
+  return std::abs(paraxial.up_to(ray, 1, surface_number).y);
+}
+
 }  // namespace sagitta::scene

@@ -38,4 +38,7 @@ struct FirstOrder {
 // `entrance_pupil_semi_diameter` may be NaN: then the pupils' semi-diameters are.
 FirstOrder first_order(const Scene& scene, const Wavelength& wavelength, double entrance_pupil_semi_diameter);
 
+// Height of the paraxial marginal ray (axial object point, rim of the entrance pupil) at a surface: the beam's radius there.
+double marginal_height(const Scene& scene, const Wavelength& wavelength, const Pupil& entrance_pupil, int surface_number);
+
 }  // namespace sagitta::scene

@@ -4,7 +4,8 @@
 //   struct S {
 //     static constexpr std::string_view kind;               // the key of the prescription, e.g. "conic"
 //     static constexpr std::array keys;                     // its keys (numerics/key.h)
-//     template <class P, class A> static S from(const P& parameters, A& arena);   // from checked parameters
+//     template <class P, class A> static S from(const P& parameters, A& arena);   // from checked parameters, or
+//     static constexpr bool is_made_of_data = true;         // made by scene/compile from points
 //     template <class T> T sag(T x, T y) const;             // mm; NaN outside the domain
 //     template <class T> Gradient<T> gradient(T x, T y) const;
 //     template <class T> Crossing<T> meet(Vec3<T> p, Vec3<T> d) const;

@@ -42,6 +42,7 @@ namespace sagitta::surface {
 
 struct Facets {
   static constexpr std::string_view kind = "delaunay";
+  static constexpr bool is_made_of_data = true;  // made by scene/compile from the points, not by from()
   static constexpr std::array keys{
       numerics::Key{"points", numerics::ValueKind::file, "file of the points", true},
       numerics::Key{.name = "format", .kind = numerics::ValueKind::text, .meaning = "format of the file", .choices = "xyz|cso"},
@@ -52,12 +53,6 @@ struct Facets {
 
   const Mesh* mesh = nullptr;
   double curvature = 0;  // at the vertex, by the contract's least squares (scene/cloud_fit.h)
-
-  // The arena holds the mesh that was made of the surface's points.
-  template <class Parameters, class Arena>
-  static Facets from(const Parameters&, Arena& arena) {
-    return {arena.mesh(), arena.mesh_vertex_curvature()};
-  }
 
   double vertex_curvature() const { return curvature; }
 

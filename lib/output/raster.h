@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// A picture as a person sees it: encoded sRGB, 8 bits a component, the top row first. Written as PNG, and as the part
+// that lets any EXR viewer show something.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "lib/output/atomic_file.h"
+#include "lib/output/exr.h"
+
+namespace sagitta::output {
+
+struct Raster {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> rgb;  // 3 bytes a pixel
+};
+
+// The same picture gives the same bytes: no time stamp. An empty picture is an error.
+WriteResult write_png(const std::string& path, const Raster& raster);
+
+// The part "preview": channels R, G, B in linear light, 0 to 1, which is what EXR viewers expect.
+ExrPart preview_part(const Raster& raster);
+
+}  // namespace sagitta::output
