@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include "lib/scene/cloud_fit.h"
@@ -93,16 +94,18 @@ void take_vertices(const PointCloud& cloud, const std::vector<RawFacet>& facets,
 
 void refuse_cliffs(const PointCloud& cloud, const std::vector<RawFacet>& facets, const MeshStorage& mesh,
                    prescription::Findings& findings) {
-  for (std::size_t f = 0; f < facets.size() && findings.error_count() < 100; ++f) {
+  std::set<std::pair<std::uint32_t, std::uint32_t>> told;  // by both facets of the edge
+  for (std::size_t f = 0; f < facets.size() && told.size() < 100; ++f) {
     const Facet& facet = mesh.facets[f];
     if (std::abs(facet.slope_x) <= steepest_slope && std::abs(facet.slope_y) <= steepest_slope) continue;
     const auto length = [&](int i) { return edge_length(cloud, facets[f], i); };
     const int shortest = length(0) < length(1) ? (length(0) < length(2) ? 0 : 2) : (length(1) < length(2) ? 1 : 2);
     const auto corner = [&](int i) { return facets[f].corner[static_cast<std::size_t>(i % 3)]; };
-    const std::uint32_t a = corner(shortest + 1), b = corner(shortest + 2);
-    findings.error(place_of(cloud, std::max(a, b)),
+    const auto [first, second] = std::minmax({corner(shortest + 1), corner(shortest + 2)});
+    if (!told.emplace(first, second).second) continue;
+    findings.error(place_of(cloud, second),
                    fmt::format("two points so near one place that no slope can be told: the other one is in line {}",
-                               place_of(cloud, std::min(a, b)).line),
+                               place_of(cloud, first).line),
                    "a surface has one height at every (x, y)");
   }
 }

@@ -100,7 +100,7 @@ struct Facets {
   template <class T>
   struct Found {
     std::uint32_t facet = no_facet;
-    T w[3]{};
+    T w[3] = {T(0), T(0), T(0)};
 
     // (3) for a quantity of the vertices.
     template <class Quantity>
