@@ -45,13 +45,13 @@ class Folder {
   std::filesystem::path path_;
 };
 
-struct Run {
+struct Outcome {
   int status = 0;  // exit status; 128 + signal where it was killed
   std::string out, err;
 };
 
 // `arguments` as a shell would take them.
-inline Run run_program(const std::string& arguments, const std::string& before = {}) {
+inline Outcome run_program(const std::string& arguments, const std::string& before = {}) {
   const Folder folder;
   const std::string command = before + "'" SAGITTA_PROGRAM "' " + arguments + " >'" + folder.path("out") + "' 2>'" + folder.path("err") + "'";
   const int status = std::system(command.c_str());
@@ -91,7 +91,7 @@ inline std::vector<RayRow> trace_given(const std::string& system, const std::vec
   const Folder folder;
   std::string csv = "x_mm,y_mm,z_mm,l,m,n\n";
   for (const std::string& ray : rays) csv += ray + "\n";
-  const Run run = run_program("rays " + folder.file("system.yaml", system) + " --from " + folder.file("rays.csv", csv));
+  const Outcome run = run_program("rays " + folder.file("system.yaml", system) + " --from " + folder.file("rays.csv", csv));
   EXPECT_EQ(run.status, expected_status) << run.err;
   return parse_rays(run.out);
 }
