@@ -10,7 +10,7 @@
 #include "lib/scene/triangulate.h"
 #include "lib/surface/conic.h"
 #include "lib/surface/refraction.h"
-#include "tests/point_sets.h"
+#include "tests/support/point_sets.h"
 
 namespace sagitta::surface {
 namespace {
