@@ -109,7 +109,7 @@ LaunchPupil compile_pupil(const Model& model, const Scene& scene, const FirstOrd
       break;
     }
   }
-  if (!result.telecentric && !std::isfinite(result.semi_diameter))
+  if (!findings.has_errors() && !result.telecentric && !std::isfinite(result.semi_diameter))
     findings.error(model.aperture.place, "the entrance pupil has no finite size");
   const bool by_na_and_height = model.aperture.kind == ApertureKind::object_na &&
                                 model.fields.kind == prescription::FieldKind::object_heights_mm;
