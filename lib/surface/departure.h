@@ -34,13 +34,12 @@ struct Height {
 
 inline constexpr int max_departure_steps = 100;
 
+// From the point at start_path on; `forward` tells the sense in which the line crosses there (d.n > 0).
 // `surface.height(x, y)` gives Height<T>; NaN where S is undefined.
 template <class T, class Surface>
-Crossing<T> meet_departure(const Conic& base, const Surface& surface, const Vec3<T>& p, const Vec3<T>& d) {
+Crossing<T> meet_from(const T& start_path, bool forward, Surface&& surface, const Vec3<T>& p, const Vec3<T>& d) {
   using std::abs;
-  const Crossing<T> start = base.meet(p, d);
-  if (start.status != Status::ok) return start;
-  const Vec3<T> origin = p + start.path * d;
+  const Vec3<T> origin = p + start_path * d;
   const T eps = std::numeric_limits<T>::epsilon();
 
   T t(0);
@@ -56,8 +55,8 @@ Crossing<T> meet_departure(const Conic& base, const Surface& surface, const Vec3
     T step = -f / slope;
     const T scale = abs(origin.x) + abs(origin.y) + abs(origin.z) + abs(t);
     if (abs(f) <= rounding || abs(step) <= T(4) * eps * scale) {
-      const bool same_sense = (slope > T(0)) == (start.along > T(0));
-      const T path = start.path + (abs(f) <= rounding ? t : t + step);  // the last step is free
+      const bool same_sense = (slope > T(0)) == forward;
+      const T path = start_path + (abs(f) <= rounding ? t : t + step);  // the last step is free
       if (!(abs(f) <= T(64) * rounding + abs(slope) * T(8) * eps * scale) || !same_sense) break;
       return {path, {-h.dz_dx, -h.dz_dy, T(1)}, slope, Status::ok};
     }
@@ -90,6 +89,14 @@ Crossing<T> meet_departure(const Conic& base, const Surface& surface, const Vec3
     if (!moved) break;
   }
   return no_crossing<T>(Status::not_converged);
+}
+
+// From the base conic's hit on.
+template <class T, class Surface>
+Crossing<T> meet_departure(const Conic& base, const Surface& surface, const Vec3<T>& p, const Vec3<T>& d) {
+  const Crossing<T> start = base.meet(p, d);
+  if (start.status != Status::ok) return start;
+  return meet_from(start.path, start.along > T(0), surface, p, d);
 }
 
 }  // namespace sagitta::surface

@@ -56,8 +56,12 @@ struct Facets {
 
   double vertex_curvature() const { return curvature; }
 
-  // Is there a facet at (x, y)?
-  bool covers(double x, double y) const { return locate_below<double>(x, y).facet != no_facet; }
+  // The facet at (x, y); no_facet where there is none.
+  template <class T>
+  std::uint32_t facet_at(const T& x, const T& y) const {
+    return locate_below<T>(x, y).facet;
+  }
+  bool covers(double x, double y) const { return facet_at(x, y) != no_facet; }
 
   template <class T>
   T sag(const T& x, const T& y) const {
@@ -73,13 +77,20 @@ struct Facets {
     return {T(mesh->facets[found.facet].slope_x), T(mesh->facets[found.facet].slope_y)};
   }
 
+
   struct NotCounted {
     constexpr void operator()() const {}
   };
 
+  // The facet that the line start + t d meets, and the t there; no_facet where it meets none.
+  template <class T>
+  struct Hit {
+    std::uint32_t facet = no_facet;
+    T path{};
+  };
   // `visited` is called once for every facet that is tested.
   template <class T, class Visited = NotCounted>
-  Crossing<T> meet(const Vec3<T>& start, const Vec3<T>& d, Visited&& visited = {}) const {
+  Hit<T> find(const Vec3<T>& start, const Vec3<T>& d, Visited&& visited = {}) const {
     // From the point of the ray nearest to the middle of the data: a start far away costs its own rounding only.
     const T to_middle = dot(vec3_cast<T>(mesh->base.centre) - start, d);
     const Vec3<T> p = start + to_middle * d;
@@ -88,11 +99,18 @@ struct Facets {
     const Vec3<T> o = p + near * d;
     Found<T> found = walk(View<T>(o, d), visited);
     if (found.facet == no_facet) found = search(p, d, near, visited);
-    if (found.facet == no_facet) return no_crossing<T>(Status::outside_data);
-    const Facet& facet = mesh->facets[found.facet];
-    const T a = facet.slope_x, b = facet.slope_y;
+    if (found.facet == no_facet) return {};
     const T path = found.between([&](const Vec3<T>& v) { return dot(v - o, d); }, *mesh);
-    return {to_middle + (near + path), {-a, -b, T(1)}, d.z - a * d.x - b * d.y, Status::ok};
+    return {found.facet, to_middle + (near + path)};
+  }
+
+  template <class T, class Visited = NotCounted>
+  Crossing<T> meet(const Vec3<T>& start, const Vec3<T>& d, Visited&& visited = {}) const {
+    const Hit<T> hit = find(start, d, visited);
+    if (hit.facet == no_facet) return no_crossing<T>(Status::outside_data);
+    const Facet& facet = mesh->facets[hit.facet];
+    const T a = facet.slope_x, b = facet.slope_y;
+    return {hit.path, {-a, -b, T(1)}, d.z - a * d.x - b * d.y, Status::ok};
   }
 
  private:
