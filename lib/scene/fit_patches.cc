@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <span>
+
+#include "lib/scene/rings.h"
 
 namespace sagitta::scene {
 namespace {
@@ -25,76 +26,38 @@ CloughTocherPatch::Slope gradient(const Polynomial& c, double X, double Y) {
           c[1] + c[3] * X + 2 * c[4] * Y + c[6] * X * X + 2 * c[7] * X * Y + 3 * c[8] * Y * Y};
 }
 
-// The vertices that share an edge with each vertex, as lists end to end.
-class Neighbours {
- public:
-  explicit Neighbours(const Mesh& mesh) : begin_(mesh.vertex_count + 1, 0) {
-    const auto for_each_edge = [&](auto&& take) {
-      for (std::uint32_t f = 0; f < mesh.facet_count; ++f)
-        for (int i = 0; i < 3; ++i) {
-          // every edge once: by the facet of the lower number, or by its only one
-          const std::uint32_t other = mesh.facets[f].neighbour[i];
-          if (other != no_facet && other < f) continue;
-          take(mesh.facets[f].corner[(i + 1) % 3], mesh.facets[f].corner[(i + 2) % 3]);
-        }
-    };
-    for_each_edge([&](std::uint32_t a, std::uint32_t b) { ++begin_[a + 1], ++begin_[b + 1]; });
-    for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
-    list_.resize(begin_.back());
-    std::vector<std::uint32_t> filled(begin_.begin(), begin_.end() - 1);
-    for_each_edge([&](std::uint32_t a, std::uint32_t b) { list_[filled[a]++] = b, list_[filled[b]++] = a; });
-  }
-  std::span<const std::uint32_t> of(std::uint32_t vertex) const {
-    return {list_.data() + begin_[vertex], begin_[vertex + 1] - begin_[vertex]};
-  }
-
- private:
-  std::vector<std::uint32_t> begin_, list_;
-};
-
 class VertexFit {
  public:
-  explicit VertexFit(const Mesh& mesh) : mesh_(mesh), neighbours_(mesh), seen_(mesh.vertex_count, no_facet) {}
+  explicit VertexFit(const Mesh& mesh) : mesh_(mesh), rings_(mesh) {}
 
   Polynomial at(std::uint32_t vertex) {
-    rings_ = {vertex};
-    seen_[vertex] = vertex;
-    ring_begin_ = 0;
-    add_ring(vertex);
-    add_ring(vertex);
+    rings_.start({vertex});
+    rings_.add_ring();
+    rings_.add_ring();
     constexpr std::size_t most_points = 300;
     for (;;) {
       Polynomial result{};
       if (solve(vertex, cubic_terms, result)) return result;
-      const std::size_t before = rings_.size();
-      if (before < most_points) add_ring(vertex);
-      if (rings_.size() > before) continue;
+      const std::size_t before = rings_.vertices().size();
+      if (before < most_points) rings_.add_ring();
+      if (rings_.vertices().size() > before) continue;
       if (solve(vertex, 5, result) || solve(vertex, 2, result)) return result;
       return {};
     }
   }
 
  private:
-  void add_ring(std::uint32_t vertex) {
-    const std::size_t end = rings_.size();
-    for (; ring_begin_ < end; ++ring_begin_)
-      for (const std::uint32_t next : neighbours_.of(rings_[ring_begin_]))
-        if (seen_[next] != vertex) {
-          seen_[next] = vertex;
-          rings_.push_back(next);
-        }
-  }
-
   bool solve(std::uint32_t vertex, int terms, Polynomial& result) {
-    const auto count = static_cast<Eigen::Index>(rings_.size() - 1);
+    const std::vector<std::uint32_t>& around = rings_.vertices();  // the vertex itself is the first
+    const auto count = static_cast<Eigen::Index>(around.size() - 1);
     if (count < terms) return false;
     const Vec3<double> v = mesh_.vertices[vertex];
     double scale = 0;
-    for (const std::uint32_t i : rings_) scale = std::max(scale, std::hypot(mesh_.vertices[i].x - v.x, mesh_.vertices[i].y - v.y));
+    for (const std::uint32_t i : around) scale = std::max(scale, std::hypot(mesh_.vertices[i].x - v.x, mesh_.vertices[i].y - v.y));
     matrix_.resize(count, cubic_terms);
     right_.resize(count);
     for (Eigen::Index row = 0; row < count; ++row) {
-      const Vec3<double> q = mesh_.vertices[rings_[static_cast<std::size_t>(row) + 1]] - v;
+      const Vec3<double> q = mesh_.vertices[around[static_cast<std::size_t>(row) + 1]] - v;
       const double X = q.x / scale, Y = q.y / scale;
       matrix_.row(row) << X, Y, X * X, X * Y, Y * Y, X * X * X, X * X * Y, X * Y * Y, Y * Y * Y;
       right_(row) = q.z;
@@ -112,10 +75,7 @@ class VertexFit {
   }
 
   const Mesh& mesh_;
-  Neighbours neighbours_;
-  std::vector<std::uint32_t> seen_;   // the vertex for which it was reached last
-  std::vector<std::uint32_t> rings_;  // the vertex, then ring by ring
-  std::size_t ring_begin_ = 0;        // where the last ring begins
+  Rings rings_;
   Eigen::Matrix<double, Eigen::Dynamic, cubic_terms> matrix_;
   Eigen::VectorXd right_;
 };

@@ -78,6 +78,14 @@ struct Facets {
   }
 
 
+  // The facet itself where it covers (x, y); else its neighbour on that side, no_facet beyond a rim.
+  template <class T>
+  std::uint32_t next_toward(std::uint32_t facet, const T& x, const T& y) const {
+    const Found<T> seen = View<T>(Vec3<T>{x, y, T(mesh->base.centre.z)}, Vec3<T>{T(0), T(0), T(1)}).weigh(*mesh, facet);
+    const int least = seen.least();
+    return seen.w[least] < T(0) ? mesh->facets[facet].neighbour[least] : facet;
+  }
+
   struct NotCounted {
     constexpr void operator()() const {}
   };
@@ -119,6 +127,8 @@ struct Facets {
   struct Found {
     std::uint32_t facet = no_facet;
     T w[3] = {T(0), T(0), T(0)};
+
+    int least() const { return w[0] < w[1] ? (w[0] < w[2] ? 0 : 2) : (w[1] < w[2] ? 1 : 2); }
 
     // (3) for a quantity of the vertices.
     template <class Quantity>
@@ -171,9 +181,8 @@ struct Facets {
       visited();
       const Found<T> facet = view.weigh(*mesh, at);
       if (passes_through(facet)) return facet;
-      const T* w = facet.w;
-      const int least = w[0] < w[1] ? (w[0] < w[2] ? 0 : 2) : (w[1] < w[2] ? 1 : 2);
-      if (!(w[least] < T(0))) break;  // seen edge-on, or not a number
+      const int least = facet.least();
+      if (!(facet.w[least] < T(0))) break;  // seen edge-on, or not a number
       at = mesh->facets[at].neighbour[least];
     }
     return {};

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// The coefficients of the radial basis functions of surface/radial.h: one linear system a facet.
+#pragma once
+
+#include <vector>
+
+#include "lib/scene/triangulate.h"
+#include "lib/surface/radial.h"
+
+namespace sagitta::scene {
+
+struct RadialOptions {
+  int rings = 2;        // of nodes around the facet's corners
+  double shape_mm = 0;  // of the multiquadric; 0: the mean length of the mesh's edges in (x, y)
+};
+
+template <surface::RadialFunction function>
+struct RadialFit {
+  std::vector<typename surface::RadialPatches<function>::Patch> patches;  // one a facet
+  std::vector<std::uint32_t> nodes;
+  std::vector<double> weights;
+  double shape_squared = 0;
+};
+
+// (1) and (2) of radial.h, solved by LU with full pivoting after scaling to the size of the neighbourhood. Where the nodes do not determine the
+// interpolant (no known case of distinct points that are not all on a line) the facet stays flat.
+template <surface::RadialFunction function>
+RadialFit<function> fit_radial(const surface::Mesh& mesh, const RadialOptions& options);
+
+double mean_edge_length(const surface::Mesh& mesh);
+
+}  // namespace sagitta::scene

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// Topological rings: the vertices that share an edge with some vertices, those that share one with these, and so on. On
+// data of rings or scan lines, where the nearest points in space all lie on one line, they are the right neighbours.
+#pragma once
+
+#include <initializer_list>
+#include <span>
+#include <vector>
+
+#include "lib/surface/mesh.h"
+
+namespace sagitta::scene {
+
+// The vertices that share an edge with each vertex, as lists end to end.
+class Neighbours {
+ public:
+  explicit Neighbours(const surface::Mesh& mesh) : begin_(mesh.vertex_count + 1, 0) {
+    const auto for_each_edge = [&](auto&& take) {
+      for (std::uint32_t f = 0; f < mesh.facet_count; ++f)
+        for (int i = 0; i < 3; ++i) {
+          // every edge once: by the facet of the lower number, or by its only one
+          const std::uint32_t other = mesh.facets[f].neighbour[i];
+          if (other != surface::no_facet && other < f) continue;
+          take(mesh.facets[f].corner[(i + 1) % 3], mesh.facets[f].corner[(i + 2) % 3]);
+        }
+    };
+    for_each_edge([&](std::uint32_t a, std::uint32_t b) { ++begin_[a + 1], ++begin_[b + 1]; });
+    for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
+    list_.resize(begin_.back());
+    std::vector<std::uint32_t> filled(begin_.begin(), begin_.end() - 1);
+    for_each_edge([&](std::uint32_t a, std::uint32_t b) { list_[filled[a]++] = b, list_[filled[b]++] = a; });
+  }
+  std::span<const std::uint32_t> of(std::uint32_t vertex) const {
+    return {list_.data() + begin_[vertex], begin_[vertex + 1] - begin_[vertex]};
+  }
+
+ private:
+  std::vector<std::uint32_t> begin_, list_;
+};
+
+// Grows ring by ring around a set of vertices.
+class Rings {
+ public:
+  explicit Rings(const surface::Mesh& mesh) : neighbours_(mesh), seen_(mesh.vertex_count, 0) {}
+
+  void start(std::initializer_list<std::uint32_t> vertices) {
+    ++round_;
+    vertices_.clear();
+    ring_begin_ = 0;
+    for (const std::uint32_t vertex : vertices) take(vertex);
+  }
+  void add_ring() {
+    const std::size_t end = vertices_.size();
+    for (; ring_begin_ < end; ++ring_begin_)
+      for (const std::uint32_t next : neighbours_.of(vertices_[ring_begin_])) take(next);
+  }
+  // In the order in which they were reached, the start first.
+  const std::vector<std::uint32_t>& vertices() const { return vertices_; }
+
+ private:
+  void take(std::uint32_t vertex) {
+    if (seen_[vertex] == round_) return;
+    seen_[vertex] = round_;
+    vertices_.push_back(vertex);
+  }
+
+  Neighbours neighbours_;
+  std::vector<std::uint32_t> seen_;  // the round in which it was reached last
+  std::uint32_t round_ = 0;
+  std::vector<std::uint32_t> vertices_;
+  std::size_t ring_begin_ = 0;       // where the last ring begins
+};
+
+}  // namespace sagitta::scene
