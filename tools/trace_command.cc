@@ -72,8 +72,14 @@ int trace_command(const TraceOptions& options) {
   request.thread_count = options.thread_count;
   output::Report report = make_report(*model, *compiled);
   {
-    output::Progress progress("tracing", model->fields.points.size() * model->wavelengths_nm.size());
-    report.results = analysis::run_job(*compiled->scene, request, [&] { progress.advance(); });
+    constexpr std::uint64_t steps = 1000;
+    output::Progress line("tracing", steps);
+    std::uint64_t shown = 0;
+    report.results = analysis::run_job(*compiled->scene, request, [&](double share) {
+      const auto reached = static_cast<std::uint64_t>(share * steps);
+      line.advance(reached - shown);
+      shown = reached;
+    });
   }
 
   bool all_written = true;

@@ -40,8 +40,10 @@ struct JobResult {
   std::optional<WavefrontResult> wavefront;
 };
 
-// Results by field, then wavelength. `one_done` is called after each, from this thread.
-std::vector<JobResult> run_job(const scene::Scene& scene, const JobRequest& request,
-                               const std::function<void()>& one_done = {});
+// Called now and then with the share of the rays that are traced, in [0, 1].
+using Progress = std::function<void(double)>;
+
+// Results by field, then wavelength. Memory does not grow with the number of rays.
+std::vector<JobResult> run_job(const scene::Scene& scene, const JobRequest& request, const Progress& progress = {});
 
 }  // namespace sagitta::analysis

@@ -3,47 +3,74 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include "lib/numerics/sum.h"
+#include <limits>
 
 namespace sagitta::analysis {
+namespace {
 
-Spot spot(const trace::RayBatch& rays) {
-  Spot result{};
-  result.rays = count_statuses(rays);
-  const auto arrived = static_cast<double>(result.rays[surface::Status::ok]);
-  numerics::Sum sum_x, sum_y, sum_r2;
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (rays.ended[i] != 0) continue;
-    sum_x.add(rays.x[i]);
-    sum_y.add(rays.y[i]);
+std::size_t area(int size) { return static_cast<std::size_t>(size) * static_cast<std::size_t>(size); }
+
+}  // namespace
+
+SpotImage::SpotImage(int image_size, double pixel, double x, double y)
+    : size(image_size), pixel_mm(pixel), centre_x(x), centre_y(y), counts(area(image_size)) {}
+
+void SpotImage::add(double x, double y) {
+  const double half = size / 2;
+  for (;;) {
+    const double column = std::floor((x - centre_x) / pixel_mm) + half, row = half - 1 - std::floor((y - centre_y) / pixel_mm);
+    if (column >= 0 && column < size && row >= 0 && row < size) {
+      ++counts[static_cast<std::size_t>(row) * static_cast<std::size_t>(size) + static_cast<std::size_t>(column)];
+      return;
+    }
+    double_pixels();
   }
-  result.centroid_x = sum_x.value() / arrived;  // 0/0: NaN where no ray arrived
-  result.centroid_y = sum_y.value() / arrived;
-  double max_r2 = 0;
+}
+
+void SpotImage::double_pixels() {
+  std::vector<std::uint32_t> coarse(counts.size());
+  const auto length = static_cast<std::size_t>(size), quarter = length / 4;
+  // Pixel i stands i - size/2 pixels from the centre; size may be no multiple of 4, so halve that distance, not i.
+  const auto halved = [&](std::size_t i) { return (i + length % 4 / 2) / 2 + quarter; };
+  for (std::size_t row = 0; row < length; ++row)
+    for (std::size_t column = 0; column < length; ++column)
+      coarse[halved(row) * length + halved(column)] += counts[row * length + column];
+  counts = std::move(coarse);
+  pixel_mm *= 2;
+}
+
+void SpotCollector::add(const trace::RayBatch& rays) {
   for (std::size_t i = 0; i < rays.size(); ++i) {
+    rays_.add(rays.ended[i]);
     if (rays.ended[i] != 0) continue;
-    const double dx = rays.x[i] - result.centroid_x, dy = rays.y[i] - result.centroid_y, r2 = dx * dx + dy * dy;
-    sum_r2.add(r2);
-    max_r2 = std::max(max_r2, r2);
+    const double dx = rays.x[i] - image_.centre_x, dy = rays.y[i] - image_.centre_y;
+    x_.add(dx);
+    y_.add(dy);
+    squares_.add(dx * dx + dy * dy);
+    hull_.add(dx, dy);
+    image_.add(rays.x[i], rays.y[i]);
   }
-  result.rms_radius = std::sqrt(sum_r2.value() / arrived);
-  result.geometric_radius = arrived > 0 ? std::sqrt(max_r2) : result.rms_radius;
+}
+
+Spot SpotCollector::spot() const {
+  const auto count = static_cast<double>(rays_[surface::Status::ok]);
+  Spot result{rays_};
+  if (count == 0) {
+    result.centroid_x = result.centroid_y = result.rms_radius = result.geometric_radius = std::numeric_limits<double>::quiet_NaN();
+    return result;
+  }
+  const double mean_x = x_.value() / count, mean_y = y_.value() / count;
+  result.centroid_x = image_.centre_x + mean_x;
+  result.centroid_y = image_.centre_y + mean_y;
+  result.rms_radius = std::sqrt(std::max(0.0, squares_.value() / count - (mean_x * mean_x + mean_y * mean_y)));
+  result.geometric_radius = hull_.farthest_from(mean_x, mean_y);
   return result;
 }
 
-SpotImage spot_image(const trace::RayBatch& rays, int size, double pixel_mm, double centre_x, double centre_y) {
-  SpotImage image{size, pixel_mm, centre_x, centre_y, std::vector<std::uint32_t>(static_cast<std::size_t>(size) * static_cast<std::size_t>(size))};
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (rays.ended[i] != 0) continue;
-    const double column = std::floor((rays.x[i] - centre_x) / pixel_mm + size / 2.0);
-    const double row = std::floor((centre_y - rays.y[i]) / pixel_mm + size / 2.0);
-    if (column >= 0 && column < size && row >= 0 && row < size)
-      ++image.counts[static_cast<std::size_t>(row) * static_cast<std::size_t>(size) + static_cast<std::size_t>(column)];
-    else
-      ++image.outside;
-  }
-  return image;
+SpotImage SpotCollector::image_with(double pixel_mm) const {
+  SpotImage result = image_;
+  while (result.pixel_mm < pixel_mm) result.double_pixels();
+  return result;
 }
 
 }  // namespace sagitta::analysis

@@ -3,33 +3,55 @@
 //
 //   centroid = mean (x, y);   rms radius = sqrt(mean |(x, y) - centroid|^2);   geometric radius = max |(x, y) - centroid|
 //
-// Sums run in the order of the rays with compensation: the same bits for any thread count.
+// Rays are collected batch by batch and not kept, so any number of them takes the same memory. Sums run about a
+// provisional centre, in the order of the rays and with compensation; the point farthest from the centroid, which is
+// known only at the end, is a vertex of the points' convex hull, which is kept.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
+#include "lib/numerics/convex_hull.h"
+#include "lib/numerics/sum.h"
 #include "lib/trace/ray_batch.h"
 
 namespace sagitta::analysis {
 
 struct Spot {
   trace::StatusCounts rays;
-  double centroid_x, centroid_y;  // NaN where no ray arrived
-  double rms_radius, geometric_radius;
+  double centroid_x = 0, centroid_y = 0;  // NaN where no ray arrived
+  double rms_radius = 0, geometric_radius = 0;
 };
 
-Spot spot(const trace::RayBatch& rays);
-
-// Ray counts per pixel of a square image centred on (centre_x, centre_y); row 0 is the top (largest y). Rays beyond its
-// edge are counted in `outside`.
+// Ray counts per pixel of a square image; row 0 is the top (largest y). Its centre is the corner of four pixels, so
+// pixels of twice the size hold the sums of four.
 struct SpotImage {
-  int size = 0;
+  int size = 0;  // even
   double pixel_mm = 0, centre_x = 0, centre_y = 0;
   std::vector<std::uint32_t> counts;  // size x size
-  std::int64_t outside = 0;
+
+  SpotImage(int image_size, double pixel, double x, double y);
+  // A ray beyond the edge doubles the pixels until it lies inside.
+  void add(double x, double y);
+  void double_pixels();
 };
 
-SpotImage spot_image(const trace::RayBatch& rays, int size, double pixel_mm, double centre_x, double centre_y);
+class SpotCollector {
+ public:
+  // `image` is empty and tells the scale to begin with; its centre is the provisional centre.
+  explicit SpotCollector(SpotImage image) : image_(std::move(image)) {}
+
+  void add(const trace::RayBatch& rays);
+  Spot spot() const;
+  const SpotImage& image() const { return image_; }
+  // Doubles the pixels until they are at least so large.
+  SpotImage image_with(double pixel_mm) const;
+
+ private:
+  trace::StatusCounts rays_;
+  numerics::Sum x_, y_, squares_;  // about the image's centre
+  numerics::ConvexHull hull_;
+  SpotImage image_;
+};
 
 }  // namespace sagitta::analysis

@@ -23,15 +23,16 @@ std::string panel_title(const Report& report, const analysis::JobResult& result)
   return fmt::format("{}, {:g} nm", field_label(report, result.field), report.wavelengths_nm[result.wavelength]);
 }
 
-std::vector<ExrAttribute> common_attributes(const Report& report, const analysis::JobResult& result) {
+std::vector<ExrAttribute> common_attributes(const Report& report, const analysis::JobResult& result,
+                                            const trace::StatusCounts& rays) {
   const auto& [x, y] = report.fields[result.field];
   return {{"system", report.system},
           {"software", "sagitta " + report.version},
           {"field", static_cast<int>(result.field)},
           {report.fields_are_heights ? "object_height_mm" : "angle_deg", std::array{static_cast<float>(x), static_cast<float>(y)}},
           {"wavelength_nm", report.wavelengths_nm[result.wavelength]},
-          {"rays_launched", static_cast<double>(result.rays.total())},
-          {"rays_ok", static_cast<double>(result.rays[surface::Status::ok])}};
+          {"rays_launched", static_cast<double>(rays.total())},
+          {"rays_ok", static_cast<double>(rays[surface::Status::ok])}};
 }
 
 template <class Value>
@@ -46,7 +47,7 @@ std::vector<ExrPart> spot_parts(const Report& report) {
   for (const auto& result : report.results) {
     const analysis::SpotImage& image = *result.spot_image;
     const auto pixel = static_cast<float>(image.pixel_mm);
-    ExrPart part{part_name(report, result, "spot"), image.size, image.size, {{"Y", floats(image.counts)}}, common_attributes(report, result)};
+    ExrPart part{part_name(report, result, "spot"), image.size, image.size, {{"Y", floats(image.counts)}}, common_attributes(report, result, result.rays)};
     part.attributes.push_back({"quantity", "ray count per pixel"});
     part.attributes.push_back({"units.Y", "rays"});
     part.attributes.push_back({"pixel_size_mm", std::array{pixel, pixel}});
@@ -65,7 +66,7 @@ std::vector<ExrPart> wavefront_parts(const Report& report) {
     const double semi_diameter = report.first_order.entrance_pupil.semi_diameter;
     const auto pixel = static_cast<float>(semi_diameter / (wavefront.size / 2 - 1));
     ExrPart part{part_name(report, result, "wavefront"), wavefront.size, wavefront.size,
-                 {{"Y", floats(wavefront.opd_waves)}, {"wavefront.mask", wavefront.mask}}, common_attributes(report, result)};
+                 {{"Y", floats(wavefront.opd_waves)}, {"wavefront.mask", wavefront.mask}}, common_attributes(report, result, wavefront.rays)};
     part.attributes.push_back({"quantity", "optical path difference over the entrance pupil"});
     part.attributes.push_back({"units.Y", "waves"});
     part.attributes.push_back({"sign", "OPD = OPL(chief ray) - OPL(ray), both to the reference sphere"});
@@ -83,7 +84,7 @@ std::vector<ExrPart> wavefront_parts(const Report& report) {
 }
 
 Figure spot_figure(const Report& report) {
-  Figure figure{report.system + ": spots", "sagitta " + report.version, {}, static_cast<int>(std::min<std::size_t>(3, report.wavelengths_nm.size()))};
+  Figure figure{report.system + ": spots", "circle: RMS radius about the centroid; sagitta " + report.version, {}, static_cast<int>(std::min<std::size_t>(3, report.wavelengths_nm.size()))};
   if (report.wavelengths_nm.size() == 1) figure.columns = static_cast<int>(std::min<std::size_t>(3, report.fields.size()));
   for (const auto& result : report.results) {
     const analysis::SpotImage& image = *result.spot_image;

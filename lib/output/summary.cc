@@ -90,6 +90,11 @@ ordered_json result_json(const Report& report, const analysis::JobResult& result
 
 std::string significant(double value) { return std::isfinite(value) ? fmt::format("{:.5g}", value) : "-"; }
 
+// In mm; -0 is 0.
+std::string to_a_nanometre(double value) {
+  return std::isfinite(value) ? fmt::format("{:.6f}", std::round(value * 1e6) / 1e6 + 0.0) : "-";
+}
+
 }  // namespace
 
 std::string summary_json(const Report& report) {
@@ -135,8 +140,9 @@ std::string summary_text(const Report& report) {
                                  std::to_string(ok), std::to_string(launched - ok)};
     if (covers) row.push_back(fmt::format("{:.2f}", 100 * result.coverage.front().share));
     if (result.spot)
-      for (const double value : {result.spot->centroid_x, result.spot->centroid_y, 1e3 * result.spot->rms_radius,
-                                 1e3 * result.spot->geometric_radius})
+      for (const double value : {result.spot->centroid_x, result.spot->centroid_y}) row.push_back(to_a_nanometre(value));
+    if (result.spot)
+      for (const double value : {1e3 * result.spot->rms_radius, 1e3 * result.spot->geometric_radius})
         row.push_back(significant(value));
     if (result.wavefront) {
       const auto& wavefront = result.wavefront->wavefront;

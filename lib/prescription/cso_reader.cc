@@ -8,7 +8,9 @@
 //
 // Missing samples have radius and elevation -1 or -1000, written just so; an elevation that happens to be -1.0 mm
 // has its decimals (-1,00000123). A missing sample becomes an explicit hole (z NaN) on its meridian, at the
-// radius interpolated along the ring between its neighbours that have one; a ring without any leaves nothing.
+// radius interpolated along the ring between its neighbours that have one; a ring without any leaves nothing. Rings
+// are not round, so that place may lie inside a measured sample of an inner ring, and the hole would take good data
+// with it: then it goes between the measured samples of its meridian, and beyond the last one it leaves nothing.
 //
 // The file has z out of the eye and x to the examiner's right; the contract's eye frame has z into the eye and x to
 // the examiner's left: (x, z) -> (-x, -z).
@@ -58,6 +60,29 @@ void interpolate_around(std::vector<double>& radius, std::size_t begin, std::siz
     for (std::size_t i = left + 1; i < right; ++i) at(i) = from + (to - from) * (static_cast<double>(i - left) / steps);
     left = right;
   }
+}
+
+// The places of the missing samples (see above), NaN for those that leave nothing; the measured ones as they are.
+std::vector<double> places_of(const std::vector<double>& measured, std::size_t rings, std::size_t meridians) {
+  std::vector<double> placed = measured;
+  for (std::size_t ring = 0; ring < rings; ++ring) interpolate_around(placed, ring * meridians, meridians);
+  for (std::size_t i = 0; i < meridians; ++i) {
+    double inner = 0;
+    for (std::size_t ring = 0; ring < rings; ++ring) {
+      const auto is_missing = [&](std::size_t k) { return k < rings && std::isnan(measured[k * meridians + i]); };
+      std::size_t end = ring;
+      while (is_missing(end)) ++end;
+      const double outer = end < rings ? measured[end * meridians + i] : std::numeric_limits<double>::infinity();
+      for (const std::size_t first = ring; ring < end; ++ring) {
+        double& r = placed[ring * meridians + i];
+        if (std::isnan(r) || (r > inner && r < outer)) continue;
+        const double share = static_cast<double>(ring - first + 1) / static_cast<double>(end - first + 1);
+        r = end < rings ? inner + (outer - inner) * share : missing;
+      }
+      inner = outer;
+    }
+  }
+  return placed;
 }
 
 class CsoReader {
@@ -186,12 +211,12 @@ class CsoReader {
     auto cloud = std::make_shared<PointCloud>();
     cloud->file = request_.file;
     std::size_t missing_count = 0;
-    for (std::size_t ring = 0; ring < ring_count_; ++ring) interpolate_around(radius_, ring * meridian_count_, meridian_count_);
-    for (std::size_t k = 0; k < radius_.size(); ++k) {
+    const std::vector<double> radius = places_of(radius_, ring_count_, meridian_count_);
+    for (std::size_t k = 0; k < radius.size(); ++k) {
       if (std::isnan(elevation_[k])) ++missing_count;
-      if (std::isnan(radius_[k])) continue;
+      if (std::isnan(radius[k])) continue;
       const Direction direction = meridian(k % meridian_count_, meridian_count_);
-      cloud->points.push_back({-radius_[k] * direction.cosine, radius_[k] * direction.sine, -elevation_[k]});
+      cloud->points.push_back({-radius[k] * direction.cosine, radius[k] * direction.sine, -elevation_[k]});
       cloud->lines.push_back(first_line_ + static_cast<std::uint32_t>(radius_.size() + k));
     }
     if (missing_count == radius_.size()) {

@@ -109,6 +109,8 @@ LaunchPupil compile_pupil(const Model& model, const Scene& scene, const FirstOrd
       break;
     }
   }
+  if (!findings.has_errors() && !result.telecentric && !std::isfinite(result.semi_diameter))
+    findings.error(model.aperture.place, "the entrance pupil has no finite size");
   const bool by_na_and_height = model.aperture.kind == ApertureKind::object_na &&
                                 model.fields.kind == prescription::FieldKind::object_heights_mm;
   if (result.telecentric && !by_na_and_height)
@@ -166,6 +168,11 @@ CompileResult compile(const Model& model) {
   if (findings.has_errors()) return result;
 
   set_vertex_curvatures(model, scene);
+  for (std::size_t i = 0; i < scene.surfaces.size(); ++i)
+    if (!std::isfinite(scene.surfaces[i].vertex_curvature))
+      findings.error(model.surfaces[i].shape.place, "the surface has no curvature at its vertex, so the system has no first order",
+                     "the radius is too small for a number, or too few points lie around (0, 0)");
+  if (findings.has_errors()) return result;
   scene.pupil = compile_pupil(model, scene, first_order(scene, scene.primary, 1), findings);
   result.first_order = first_order(scene, scene.primary,
                                    scene.pupil.telecentric ? std::numeric_limits<double>::quiet_NaN() : scene.pupil.semi_diameter);

@@ -79,10 +79,10 @@ struct Conic {
     const T C = c * (p.x * p.x + p.y * p.y + one_plus_K * p.z * p.z) - T(2) * p.z;
     const T root = sqrt(B * B - A * C);  // NaN: the line passes by
     const T along = d.z < T(0) ? -root : root;
-    const bool same_sign = d.z < T(0) ? B <= T(0) : B >= T(0);
-    const T t = (same_sign ? C : B - along) / (same_sign ? B + along : A);  // (5)
+    const T s_B = d.z < T(0) ? -B : B;
+    const T t = (s_B >= T(0) ? C : B - along) / (s_B >= T(0) ? B + along : A);  // (5)
     const T nz = T(1) - one_plus_K * c * (p.z + t * d.z);                     // (4)
-    const bool hit = nz > T(0) && t - t == T(0);                              // t - t: neither NaN nor infinite
+    const bool hit = (nz > T(0)) & (t - t == T(0));                              // t - t: neither NaN nor infinite
     const T path = hit ? e + t : not_a_number<T>();
     return {path,
             {-c * (p.x + t * d.x), -c * (p.y + t * d.y), nz},

@@ -161,7 +161,7 @@ struct Facets {
     return {};
   }
 
-  // All facets in the cells under the line p + t d; the one nearest to t = near.
+  // All facets in the cells under the line p + t d, p near the middle; the one nearest to t = near.
   template <class T, class Visited>
   Found<T> search(const Vec3<T>& p, const Vec3<T>& d, const T& near, Visited&& visited) const {
     // The part of the line inside the bounding box. The margin covers the rounding of the box's own arithmetic and of
@@ -185,8 +185,7 @@ struct Facets {
     clip(q.z, e.z, mesh->low.z, mesh->high.z);
     if (!(first <= last)) return {};
 
-    const T middle = 0.5 * (first + last);
-    const View<T> view(p + middle * d, d);
+    const View<T> view(p, d);
     Found<T> nearest{};
     T least_distance{};
     const auto look_into = [&](std::size_t cell) {

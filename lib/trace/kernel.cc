@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lib/trace/kernel.h"
 
+#include <cstdlib>
+#include <string_view>
+#include <type_traits>
+
 #include "lib/surface/refraction.h"
 
 namespace sagitta::trace {
@@ -18,10 +22,13 @@ struct Setting {
 };
 
 template <bool centred, Deflection deflection, class Shape>
-void advance_block(const Shape shape, const Setting setting, const RayColumns rays, const int ray_count) {
+[[gnu::always_inline]] inline void advance_block(const Shape& shape, const Setting& setting, const RayColumns& rays,
+                                                 const int ray_count) {
 #pragma GCC ivdep
   for (int i = 0; i < ray_count; ++i) {
-    const bool travels = rays.ended[i] == 0;
+    const std::int32_t ended = rays.ended[i];
+    const double opl = rays.opl[i];
+    const bool travels = ended == 0;
     Vec3<double> start{rays.x[i], rays.y[i], rays.z[i]}, d{rays.l[i], rays.m[i], rays.n[i]};
     const Vec3<double> old_start = start, old_d = d;
     if constexpr (centred) {
@@ -35,7 +42,7 @@ void advance_block(const Shape shape, const Setting setting, const RayColumns ra
     const bool met = crossing.status == Status::ok;
     const Vec3<double> hit = start + crossing.path * d;
     const double r_squared = hit.x * hit.x + hit.y * hit.y;
-    const bool open = r_squared <= setting.outer_squared && !(r_squared < setting.inner_squared);
+    const bool open = (r_squared <= setting.outer_squared) & !(r_squared < setting.inner_squared);
 
     Vec3<double> out = d;
     if constexpr (deflection == Deflection::refract)
@@ -55,22 +62,72 @@ void advance_block(const Shape shape, const Setting setting, const RayColumns ra
     rays.l[i] = !travels ? old_d.x : turns ? out.x : d.x;
     rays.m[i] = !travels ? old_d.y : turns ? out.y : d.y;
     rays.n[i] = !travels ? old_d.z : turns ? out.z : d.z;
-    rays.opl[i] = travels && met ? rays.opl[i] + setting.index_before * crossing.path : rays.opl[i];
-    rays.ended[i] = travels ? end : rays.ended[i];
+    rays.opl[i] = travels & met ? opl + setting.index_before * crossing.path : opl;
+    rays.ended[i] = travels ? end : ended;
   }
+}
+
+// The same body for each instruction set. Without contraction all give the same bits. A function that the compiler did
+// not draw in is an ordinary one for every machine, so nothing can trap.
+template <bool centred, Deflection deflection, class Shape>
+void advance_for_any(const Shape shape, const Setting setting, const RayColumns rays, const int ray_count) {
+  advance_block<centred, deflection>(shape, setting, rays, ray_count);
+}
+#if defined(__x86_64__)
+template <bool centred, Deflection deflection, class Shape>
+[[gnu::target("arch=x86-64-v3")]] void advance_for_v3(const Shape shape, const Setting setting, const RayColumns rays,
+                                                      const int ray_count) {
+  advance_block<centred, deflection>(shape, setting, rays, ray_count);
+}
+template <bool centred, Deflection deflection, class Shape>
+[[gnu::target("arch=x86-64-v4")]] void advance_for_v4(const Shape shape, const Setting setting, const RayColumns rays,
+                                                      const int ray_count) {
+  advance_block<centred, deflection>(shape, setting, rays, ray_count);
+}
+#endif
+
+// Shapes with a closed form become vectors; an iteration or a search runs ray by ray, where wider registers do not help.
+template <class Shape>
+inline constexpr bool has_closed_form = std::is_same_v<Shape, surface::Plane> || std::is_same_v<Shape, surface::Conic>;
+
+template <bool centred, Deflection deflection, class Shape>
+void choose_instructions(const Shape& shape, const Setting& setting, const RayColumns& rays, int ray_count) {
+#if defined(__x86_64__)
+  if constexpr (has_closed_form<Shape>) {
+    switch (instruction_set()) {
+      case InstructionSet::x86_64_v4: return advance_for_v4<centred, deflection>(shape, setting, rays, ray_count);
+      case InstructionSet::x86_64_v3: return advance_for_v3<centred, deflection>(shape, setting, rays, ray_count);
+      case InstructionSet::any: break;
+    }
+  }
+#endif
+  advance_for_any<centred, deflection>(shape, setting, rays, ray_count);
 }
 
 template <bool centred, class Shape>
 void choose_deflection(Deflection deflection, const Shape& shape, const Setting& setting, const RayColumns& rays,
                        int ray_count) {
   switch (deflection) {
-    case Deflection::none: return advance_block<centred, Deflection::none>(shape, setting, rays, ray_count);
-    case Deflection::refract: return advance_block<centred, Deflection::refract>(shape, setting, rays, ray_count);
-    case Deflection::reflect: return advance_block<centred, Deflection::reflect>(shape, setting, rays, ray_count);
+    case Deflection::none: return choose_instructions<centred, Deflection::none>(shape, setting, rays, ray_count);
+    case Deflection::refract: return choose_instructions<centred, Deflection::refract>(shape, setting, rays, ray_count);
+    case Deflection::reflect: return choose_instructions<centred, Deflection::reflect>(shape, setting, rays, ray_count);
   }
 }
 
 }  // namespace
+
+InstructionSet instruction_set() {
+  static const InstructionSet chosen = [] {
+#if defined(__x86_64__)
+    const char* wanted = std::getenv("SAGITTA_ISA");
+    const std::string_view most = wanted ? wanted : "x86-64-v4";
+    if (most == "x86-64-v4" && __builtin_cpu_supports("x86-64-v4")) return InstructionSet::x86_64_v4;
+    if (most != "x86-64" && __builtin_cpu_supports("x86-64-v3")) return InstructionSet::x86_64_v3;
+#endif
+    return InstructionSet::any;
+  }();
+  return chosen;
+}
 
 void advance(const scene::Surface& surface, int surface_number, double index_before, double index_after,
              const RayColumns& rays, int ray_count) {

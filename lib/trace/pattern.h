@@ -12,6 +12,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <random>
 #include <string_view>
 #include <vector>
 
@@ -29,7 +30,26 @@ struct Pattern {
 // "hexapolar", "square", "random:7", "fan_x", "fan_y"; none for anything else.
 std::optional<Pattern> parse_pattern(std::string_view text);
 
-// at_least >= 1.
+// The points of a pattern, in order and in portions, so that any number of them takes little memory.
+class PupilStream {
+ public:
+  PupilStream(const Pattern& pattern, std::int64_t at_least);  // at_least >= 1
+
+  std::int64_t size() const { return size_; }
+  // The next points, `most` of them or the rest; none at the end.
+  std::vector<PupilPoint> next(std::int64_t most);
+
+ private:
+  PupilPoint point();
+
+  Pattern pattern_;
+  std::int64_t size_ = 0, given_ = 0;
+  std::int64_t ring_ = 0, place_ = 0;  // hexapolar: the ring and the place on it; square: the row and the column
+  std::int64_t side_ = 0;              // square: points a side
+  std::mt19937_64 generator_;
+};
+
+// All of them at once.
 std::vector<PupilPoint> pupil_points(const Pattern& pattern, std::int64_t at_least);
 
 }  // namespace sagitta::trace

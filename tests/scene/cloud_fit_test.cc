@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "lib/surface/conic.h"
-#include "tests/point_sets.h"
+#include "tests/support/point_sets.h"
 
 namespace sagitta::scene {
 namespace {

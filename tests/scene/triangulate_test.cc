@@ -9,7 +9,7 @@
 #include <set>
 
 #include "lib/surface/facets.h"
-#include "tests/point_sets.h"
+#include "tests/support/point_sets.h"
 
 namespace sagitta::scene {
 namespace {

@@ -10,7 +10,7 @@
 #include "lib/scene/triangulate.h"
 #include "lib/surface/conic.h"
 #include "lib/surface/refraction.h"
-#include "tests/point_sets.h"
+#include "tests/support/point_sets.h"
 
 namespace sagitta::surface {
 namespace {
@@ -102,6 +102,54 @@ TEST(Facets, AgreeWithTestingAllFacetsInEveryLayoutAndTilt) {
       EXPECT_LE(static_cast<double>(visited) / hits, 5);
     }
   }
+}
+
+// A walk comes to rims here: what it does not find, the search must.
+TEST(Facets, AreFoundBehindHolesByRaysOfAnyTilt) {
+  auto cloud = cloud_of(uniform_random(900, 5, 61), [](double x, double y) { return sphere(9)(x, y) + 0.1 * std::sin(3 * x); });
+  for (std::size_t i = 0; i < cloud.points.size(); i += 7) cloud.points[i].z = not_a_number<double>();
+  const auto storage = mesh_of(cloud);
+  const Facets facets{&storage->mesh};
+  Uniform u(62);
+  int hits = 0, outside = 0, disagreements = 0, several = 0;
+  for (int i = 0; i < 50000; ++i) {
+    const V d = direction(u(0, 90), u(0, 2 * std::numbers::pi)), p = V{u(-5, 5), u(-5, 5), u(0, 1.5)} - u(-20, 20) * d;
+    const auto crossing = facets.meet(p, d);
+    const BruteForce all = test_all(storage->mesh, p, d);
+    const bool hit = crossing.status == Status::ok;
+    (hit ? hits : outside) += 1;
+    several += all.paths.size() > 1;
+    // Rounding of positions over the cosine of incidence, which gets as small as 1e-4 here.
+    const auto is_this_one = [&](Real t) { return std::abs(t - Real(crossing.path)) < 1e-10L; };
+    disagreements += hit ? std::none_of(all.paths.begin(), all.paths.end(), is_this_one) : !all.paths.empty();
+  }
+  EXPECT_EQ(disagreements, 0);
+  EXPECT_GT(hits, 15000);
+  EXPECT_GT(outside, 5000);
+  EXPECT_GT(several, 50);
+}
+
+TEST(Facets, GiveTheHitNearestToTheBaseSphereWhereThereAreSeveral) {
+  // A folded sheet with a gap in the middle, where the rays are aimed: each crosses several folds on both sides.
+  std::vector<Place2> places = regular_grid(41, 9, 10, 2);
+  auto cloud = cloud_of(places, [](double x, double) {
+    return std::abs(x) < 1.2 ? not_a_number<double>() : static_cast<double>(std::lround(2 * x) & 1);
+  });
+  const auto storage = mesh_of(cloud);
+  const Facets facets{&storage->mesh};
+  Uniform u(63);
+  int several = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const V d = direction(80, u(-0.1, 0.1)), p = V{u(-0.5, 0.5), u(-1, 1), 0.5} - u(-5, 5) * d;
+    const BruteForce all = test_all(storage->mesh, p, d);
+    if (all.paths.size() < 2) continue;
+    ++several;
+    const Real predicted = storage->mesh.base.path(p, d);
+    const Real nearest = *std::min_element(all.paths.begin(), all.paths.end(),
+                                           [&](Real a, Real b) { return std::abs(a - predicted) < std::abs(b - predicted); });
+    ASSERT_NEAR(facets.meet(p, d).path, static_cast<double>(nearest), 1e-13);
+  }
+  EXPECT_GT(several, 500);
 }
 
 TEST(Facets, VisitAFewAtAnyDensity) {
