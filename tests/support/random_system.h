@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "tests/point_sets.h"
+#include "tests/support/point_sets.h"
 #include "tests/support/prescriptions.h"
 
 namespace sagitta::test {
