@@ -52,6 +52,7 @@ Crossing<T> meet_departure(const Conic& base, const Surface& surface, const Vec3
 
   for (int step_count = 0; step_count < max_departure_steps; ++step_count) {
     const T slope = d.z - d.x * h.dz_dx - d.y * h.dz_dy;  // (1)
+    if (!(slope - slope == T(0))) break;  // at the base's equator: no step could be told from none
     const T rounding = eps * (abs(origin.z + t * d.z) + h.magnitude);
     T step = -f / slope;
     const T scale = abs(origin.x) + abs(origin.y) + abs(origin.z) + abs(t);

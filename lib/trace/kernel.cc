@@ -137,9 +137,10 @@ void advance(const scene::Surface& surface, int surface_number, double index_bef
                         surface.semi_diameter * surface.semi_diameter,
                         surface.inner_semi_diameter * surface.inner_semi_diameter,
                         surface_number};
-  const Deflection deflection = surface.mirror                                   ? Deflection::reflect
-                                : surface.image || index_before == index_after ? Deflection::none
-                                                                                 : Deflection::refract;
+  const Deflection deflection = surface.image                 ? Deflection::none
+                                : surface.mirror              ? Deflection::reflect
+                                : index_before == index_after ? Deflection::none
+                                                              : Deflection::refract;
   std::visit(
       [&](const auto& shape) {
         if (surface.centred)
