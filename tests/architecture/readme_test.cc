@@ -54,9 +54,15 @@ TEST(Readme, NamesEveryFolderSystemAndScript) {
   int checked = 0;
   for (const auto& entry : fs::directory_iterator(root / "lib")) EXPECT_TRUE(names(text, "lib/" + entry.path().filename().string())) << entry.path(), ++checked;
   for (const auto& entry : fs::directory_iterator(root / "systems"))
-    if (entry.path().extension() == ".yaml") EXPECT_TRUE(names(text, entry.path().filename().string())) << entry.path(), ++checked;
+    if (entry.path().extension() == ".yaml") {
+      EXPECT_TRUE(names(text, entry.path().filename().string())) << entry.path();
+      ++checked;
+    }
   for (const auto& entry : fs::directory_iterator(root / "tools"))
-    if (!entry.path().has_extension()) EXPECT_TRUE(names(text, "tools/" + entry.path().filename().string())) << entry.path(), ++checked;
+    if (!entry.path().has_extension()) {
+      EXPECT_TRUE(names(text, "tools/" + entry.path().filename().string())) << entry.path();
+      ++checked;
+    }
   EXPECT_GT(checked, 20);
 }
 
