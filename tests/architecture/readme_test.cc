@@ -52,7 +52,10 @@ TEST(Readme, NamesEveryFolderSystemAndScript) {
   const std::string text = readme();
   const fs::path root(SAGITTA_SOURCE_DIR);
   int checked = 0;
-  for (const auto& entry : fs::directory_iterator(root / "lib")) EXPECT_TRUE(names(text, "lib/" + entry.path().filename().string())) << entry.path(), ++checked;
+  for (const auto& entry : fs::directory_iterator(root / "lib")) {
+    EXPECT_TRUE(names(text, "lib/" + entry.path().filename().string())) << entry.path();
+    ++checked;
+  }
   for (const auto& entry : fs::directory_iterator(root / "systems"))
     if (entry.path().extension() == ".yaml") {
       EXPECT_TRUE(names(text, entry.path().filename().string())) << entry.path();
