@@ -71,6 +71,7 @@ std::vector<GivenRay> read_given_rays(const std::string& file, double default_wa
     }
     std::array<double, column_names.size()> value{};
     value[wavelength_column] = default_wavelength_nm;
+    const int errors_before = findings.error_count();
     for (std::size_t c = 0; c < column_names.size(); ++c) {
       if (where[c] == absent) continue;
       if (where[c] >= cells.size()) {
@@ -87,7 +88,7 @@ std::vector<GivenRay> read_given_rays(const std::string& file, double default_wa
     }
     numerics::Vec3<double> direction{value[3], value[4], value[5]};
     const double length = norm(direction);
-    if (!findings.has_errors() && !(std::abs(length - 1) <= 1e-3))
+    if (findings.error_count() == errors_before && !(std::abs(length - 1) <= 1e-3))
       findings.error({file, number, cells[where[3]].column}, fmt::format("the direction (l, m, n) has the length {:.6g}", length),
                      "direction cosines have the length 1");
     if (std::abs(length - 1) > 4 * std::numeric_limits<double>::epsilon()) direction = (1 / length) * direction;

@@ -38,7 +38,8 @@ void add_rays(CLI::App& app, int& status) {
   auto* from = command->add_option("--from", options.from,
       "CSV file of given rays: x_mm,y_mm,z_mm,l,m,n[,wavelength_nm], global frame, direction cosines");
   auto* field = command->add_option("--field", options.field, "number of the field, from 0 (default: all)");
-  command->add_option("--wavelength", options.wavelength_nm, "wavelength in nm (default: all of the system; with --from, the primary one)");
+  command->add_option("--wavelength", options.wavelength_nm, "wavelength in nm (default: all of the system; with --from, the primary one)")
+      ->check(CLI::Range(1e-3, 1e12));
   pupil->excludes(from);
   fan->excludes(from)->excludes(pupil);
   field->excludes(from);

@@ -92,16 +92,16 @@ WavefrontResult wavefront(const scene::Scene& scene, const scene::Wavelength& wa
                           const WavefrontRequest& request) {
   const scene::FirstOrder paraxial = first_order(scene, wavelength, nan);
   const int image = scene.surface_count();
-  if (!(std::abs(paraxial.image_z) <= afocal_distance)) return {{}, "the image is afocal"};
+  if (!(std::abs(paraxial.image_z) <= afocal_distance)) return {{}, "the image is afocal", {}};
   const RayBatch chief = trace_chief(scene, wavelength, field);
   if (chief.ended[0] != 0)
     return {{}, fmt::format("the chief ray is lost: {} at surface {}",
-                            surface::status_names[static_cast<std::size_t>(chief.status(0))], chief.ended_at(0))};
+                            surface::status_names[static_cast<std::size_t>(chief.status(0))], chief.ended_at(0)), {}};
 
   ReferenceSphere sphere{chief.position(0), 0, chief.opl[0], wavelength.index[static_cast<std::size_t>(image - 1)]};
   sphere.radius = (paraxial.exit_pupil.z - trace::global_position(scene, image, chief, 0).z) /
                   trace::global_direction(scene, image, chief, 0).z;
-  if (!(sphere.radius != 0)) return {{}, "the exit pupil lies in the image: the reference sphere has no radius"};
+  if (!(sphere.radius != 0)) return {{}, "the exit pupil lies in the image: the reference sphere has no radius", {}};
 
   Wavefront result;
   result.size = request.size;
@@ -112,6 +112,7 @@ WavefrontResult wavefront(const scene::Scene& scene, const scene::Wavelength& wa
 
   result.opd_waves.assign(result.mask.size(), nan);
   std::vector<Sample> samples;  // in um
+  trace::StatusCounts counts;
   for (std::size_t pixel = 0, ray = 0; pixel < result.mask.size(); ++pixel) {
     if (result.mask[pixel] == outside_pupil) continue;
     std::int32_t ended = rays.ended[ray];
@@ -125,12 +126,12 @@ WavefrontResult wavefront(const scene::Scene& scene, const scene::Wavelength& wa
       }
     }
     result.mask[pixel] = static_cast<std::uint32_t>(ended % 8);
-    result.rays.add(ended);
+    counts.add(ended);
     ++ray;
   }
-  if (samples.empty()) return {{}, "no ray of the pupil grid arrived"};
+  if (samples.empty()) return {{}, "no ray of the pupil grid arrived", counts};
   measure(result, samples, wavelength.wavelength_um, request);
-  return {std::move(result), {}};
+  return {std::move(result), {}, counts};
 }
 
 }  // namespace sagitta::analysis

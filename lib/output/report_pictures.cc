@@ -66,7 +66,7 @@ std::vector<ExrPart> wavefront_parts(const Report& report) {
     const double semi_diameter = report.first_order.entrance_pupil.semi_diameter;
     const auto pixel = static_cast<float>(semi_diameter / (wavefront.size / 2 - 1));
     ExrPart part{part_name(report, result, "wavefront"), wavefront.size, wavefront.size,
-                 {{"Y", floats(wavefront.opd_waves)}, {"wavefront.mask", wavefront.mask}}, common_attributes(report, result, wavefront.rays)};
+                 {{"Y", floats(wavefront.opd_waves)}, {"wavefront.mask", wavefront.mask}}, common_attributes(report, result, result.wavefront->rays)};
     part.attributes.push_back({"quantity", "optical path difference over the entrance pupil"});
     part.attributes.push_back({"units.Y", "waves"});
     part.attributes.push_back({"sign", "OPD = OPL(chief ray) - OPL(ray), both to the reference sphere"});
