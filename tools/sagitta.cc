@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The program: the command line in, one command out.
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <csignal>
+#include <cstdio>
+#include <new>
+#include <system_error>
 
 #include "tools/commands.h"
 
@@ -38,7 +42,8 @@ void add_rays(CLI::App& app, int& status) {
   auto* from = command->add_option("--from", options.from,
       "CSV file of given rays: x_mm,y_mm,z_mm,l,m,n[,wavelength_nm], global frame, direction cosines");
   auto* field = command->add_option("--field", options.field, "number of the field, from 0 (default: all)");
-  command->add_option("--wavelength", options.wavelength_nm, "wavelength in nm (default: all of the system; with --from, the primary one)");
+  command->add_option("--wavelength", options.wavelength_nm, "wavelength in nm (default: all of the system; with --from, the primary one)")
+      ->check(CLI::Range(1e-3, 1e12));
   pupil->excludes(from);
   fan->excludes(from)->excludes(pupil);
   field->excludes(from);
@@ -66,8 +71,15 @@ int main(int argc, char** argv) {
   add_check(app, status);
   try {
     app.parse(argc, argv);
+    if (std::fflush(stdout) != 0) throw std::system_error(errno, std::generic_category());
   } catch (const CLI::ParseError& fault) {
     return app.exit(fault) == 0 ? 0 : 2;
+  } catch (const std::bad_alloc&) {
+    std::fputs("sagitta: not enough memory: ask for fewer fields, wavelengths or points in one run\n", stderr);
+    return 1;
+  } catch (const std::system_error& fault) {
+    std::fprintf(stderr, "sagitta: standard output cannot be written: %s\n", fault.code().message().c_str());
+    return 1;
   }
   return status;
 }

@@ -127,7 +127,7 @@ std::vector<JobResult> run_job(const scene::Scene& scene, const JobRequest& requ
       WavefrontRequest wanted = request.wavefront;
       wanted.thread_count = request.thread_count;
       result.wavefront = wavefront(scene, scene.wavelengths[result.wavelength], scene.fields[result.field], wanted);
-      if (!request.want_spot && result.wavefront->wavefront) result.rays = result.wavefront->wavefront->rays;
+      if (!request.want_spot) result.rays = result.wavefront->rays;
     }
   for (JobResult& result : results) result.coverage = coverage_of(scene, result.rays);
   return results;

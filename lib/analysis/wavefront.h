@@ -44,7 +44,6 @@ struct Wavefront {
   int size = 0;
   std::vector<double> opd_waves;    // size x size, row 0 is the top (largest y); NaN where there is none
   std::vector<std::uint32_t> mask;  // size x size
-  trace::StatusCounts rays;
   double reference_radius = 0;      // R of (2), mm, signed
   double rms_waves = 0, peak_to_valley_waves = 0;
   std::optional<ZernikeFit> zernike;  // coefficients in um; none where the samples do not determine the terms
@@ -52,7 +51,8 @@ struct Wavefront {
 
 struct WavefrontResult {
   std::optional<Wavefront> wavefront;
-  std::string reason;  // why there is none
+  std::string reason;         // why there is none
+  trace::StatusCounts rays;   // of the grid
 };
 
 WavefrontResult wavefront(const scene::Scene& scene, const scene::Wavelength& wavelength, const scene::Field& field,

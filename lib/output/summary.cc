@@ -48,11 +48,12 @@ ordered_json losses_json(const Report& report, const trace::StatusCounts& rays) 
   return result;
 }
 
-ordered_json wavefront_json(const analysis::Wavefront& wavefront, double pupil_semi_diameter) {
+ordered_json wavefront_json(const analysis::WavefrontResult& measured, double pupil_semi_diameter) {
+  const analysis::Wavefront& wavefront = *measured.wavefront;
   ordered_json result{{"rms_waves", wavefront.rms_waves},
                       {"peak_to_valley_waves", wavefront.peak_to_valley_waves},
                       {"zernike", nullptr},
-                      {"samples", wavefront.rays[Status::ok]},
+                      {"samples", measured.rays[Status::ok]},
                       {"reference_sphere_radius_mm", wavefront.reference_radius}};
   if (wavefront.zernike)
     result["zernike"] = {{"indexing", "osa"},
@@ -79,7 +80,7 @@ ordered_json result_json(const Report& report, const analysis::JobResult& result
                     {"geometric_radius_mm", result.spot->geometric_radius}};
   if (result.wavefront) {
     if (result.wavefront->wavefront) {
-      json["wavefront"] = wavefront_json(*result.wavefront->wavefront, report.first_order.entrance_pupil.semi_diameter);
+      json["wavefront"] = wavefront_json(*result.wavefront, report.first_order.entrance_pupil.semi_diameter);
     } else {
       json["wavefront"] = nullptr;
       json["reason"] = result.wavefront->reason;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lib/scene/first_order.h"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace sagitta::scene {
@@ -8,9 +10,19 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// A paraxial ray (y, V) at some z.
+// A paraxial ray (y, V) at some z, with the size of the terms that made y (the largest so far) and V (their sum). What is
+// below their rounding is zero: else an afocal system would have a focal length of 1e17 mm.
 struct ParaxialRay {
   double y, v;
+  double y_terms = std::abs(y), v_terms = std::abs(v);
+
+  double height() const { return significant(y, y_terms); }
+  double slope() const { return significant(v, v_terms); }
+
+ private:
+  static double significant(double value, double terms) {
+    return std::abs(value) <= 16 * std::numeric_limits<double>::epsilon() * terms ? 0 : value;
+  }
 };
 
 // The indices of the gaps with the sign of the direction of travel.
@@ -35,7 +47,10 @@ class Paraxial {
   ParaxialRay through(ParaxialRay ray, int first, int last) const {
     for (int i = first; i <= last; ++i) {
       if (i > first) ray = transferred(ray, i);
-      if (!scene_.surface(i).image) ray.v -= (index(i) - index(i - 1)) * scene_.surface(i).vertex_curvature * ray.y;
+      if (scene_.surface(i).image) continue;
+      const double power = (index(i) - index(i - 1)) * scene_.surface(i).vertex_curvature;
+      ray.v -= power * ray.y;
+      ray.v_terms += std::abs(power) * ray.y_terms;
     }
     return ray;
   }
@@ -47,8 +62,8 @@ class Paraxial {
 
  private:
   ParaxialRay transferred(ParaxialRay ray, int to) const {
-    const double thickness = scene_.surface(to).axis_z - scene_.surface(to - 1).axis_z;
-    return {ray.y + thickness / index(to - 1) * ray.v, ray.v};
+    const double rise = (scene_.surface(to).axis_z - scene_.surface(to - 1).axis_z) / index(to - 1) * ray.v;
+    return {ray.y + rise, ray.v, std::max(ray.y_terms, std::abs(ray.y) + std::abs(rise)), ray.v_terms};
   }
 
   const Scene& scene_;
@@ -56,7 +71,9 @@ class Paraxial {
 };
 
 // Where a ray with (y, V) at z = 0 crosses the axis in a medium of index n; infinite if it never does.
-double crossing(ParaxialRay ray, double index) { return ray.v == 0 ? infinity : -index * ray.y / ray.v; }
+double crossing(const ParaxialRay& ray, double index) {
+  return ray.slope() == 0 ? infinity : -index * ray.y / ray.slope();
+}
 
 }  // namespace
 
@@ -70,7 +87,7 @@ FirstOrder first_order(const Scene& scene, const Wavelength& wavelength, double 
   FirstOrder result{};
   const ParaxialRay parallel = paraxial.through({1, 0}, 1, last);  // (a, -P)
   const ParaxialRay central = paraxial.through({0, 1}, 1, last);   // (b, d)
-  result.power = -parallel.v;
+  result.power = -parallel.slope();
   // 1/0 = infinity marks what an afocal system does not have.
   result.effective_focal_length = 1 / result.power;
   result.front_focal_length = -n / result.power;
@@ -84,7 +101,7 @@ FirstOrder first_order(const Scene& scene, const Wavelength& wavelength, double 
   result.front_nodal_point = result.front_focal_point + n_after / result.power;
 
   // Entrance pupil: the stop's height is A y + B V; its centre is seen where A (-z V/n) + B V = 0.
-  const double A = paraxial.up_to({1, 0}, 1, scene.stop).y, B = paraxial.up_to({0, 1}, 1, scene.stop).y;
+  const double A = paraxial.up_to({1, 0}, 1, scene.stop).height(), B = paraxial.up_to({0, 1}, 1, scene.stop).y;
   result.entrance_pupil.z = A == 0 ? infinity : z_first + n * B / A;
   result.entrance_pupil.magnification = 1 / A;
   result.entrance_pupil.semi_diameter = entrance_pupil_semi_diameter;
@@ -93,14 +110,14 @@ FirstOrder first_order(const Scene& scene, const Wavelength& wavelength, double 
   const int from = scene.stop, to = last < from ? from : last;
   const ParaxialRay through_centre = paraxial.through({0, 1}, from, to);
   const double z_to = scene.surface(to).axis_z;
-  result.exit_pupil.z = through_centre.v == 0 ? infinity : z_to + crossing(through_centre, paraxial.index(to));
-  result.exit_pupil.magnification = 1 / through_centre.v;
+  result.exit_pupil.z = z_to + crossing(through_centre, paraxial.index(to));
+  result.exit_pupil.magnification = 1 / through_centre.slope();
   result.exit_pupil.semi_diameter = std::abs(entrance_pupil_semi_diameter * A * result.exit_pupil.magnification);
 
   const ParaxialRay axial = scene.object.at_infinity()
                                 ? parallel
                                 : paraxial.through({(z_first - scene.object.z) / n, 1}, 1, last);
-  result.image_z = axial.v == 0 ? infinity : z_last + crossing(axial, n_after);
+  result.image_z = z_last + crossing(axial, n_after);
   return result;
 }
 

@@ -34,12 +34,11 @@ struct Height {
 
 inline constexpr int max_departure_steps = 100;
 
-// From the point at start_path on; `forward` tells the sense in which the line crosses there (d.n > 0).
+// From the point `origin` on, at path start_path; `forward` tells the sense in which the line crosses there (d.n > 0).
 // `surface.height(x, y)` gives Height<T>; NaN where S is undefined.
 template <class T, class Surface>
-Crossing<T> meet_from(const T& start_path, bool forward, Surface&& surface, const Vec3<T>& p, const Vec3<T>& d) {
+Crossing<T> meet_from(const T& start_path, const Vec3<T>& origin, bool forward, Surface&& surface, const Vec3<T>& d) {
   using std::abs;
-  const Vec3<T> origin = p + start_path * d;
   const T eps = std::numeric_limits<T>::epsilon();
 
   T t(0);
@@ -51,14 +50,15 @@ Crossing<T> meet_from(const T& start_path, bool forward, Surface&& surface, cons
 
   for (int step_count = 0; step_count < max_departure_steps; ++step_count) {
     const T slope = d.z - d.x * h.dz_dx - d.y * h.dz_dy;  // (1)
+    if (!(slope - slope == T(0))) break;  // at the base's equator: no step could be told from none
     const T rounding = eps * (abs(origin.z + t * d.z) + h.magnitude);
     T step = -f / slope;
     const T scale = abs(origin.x) + abs(origin.y) + abs(origin.z) + abs(t);
     if (abs(f) <= rounding || abs(step) <= T(4) * eps * scale) {
       const bool same_sense = (slope > T(0)) == forward;
-      const T path = start_path + (abs(f) <= rounding ? t : t + step);  // the last step is free
+      const T last = abs(f) <= rounding ? t : t + step;  // the last step is free
       if (!(abs(f) <= T(64) * rounding + abs(slope) * T(8) * eps * scale) || !same_sense) break;
-      return {path, {-h.dz_dx, -h.dz_dy, T(1)}, slope, Status::ok};
+      return {start_path + last, origin + last * d, {-h.dz_dx, -h.dz_dy, T(1)}, slope, Status::ok};
     }
     if (f < T(0)) {
       below = t;
@@ -96,7 +96,7 @@ template <class T, class Surface>
 Crossing<T> meet_departure(const Conic& base, const Surface& surface, const Vec3<T>& p, const Vec3<T>& d) {
   const Crossing<T> start = base.meet(p, d);
   if (start.status != Status::ok) return start;
-  return meet_from(start.path, start.along > T(0), surface, p, d);
+  return meet_from(start.path, start.point, start.along > T(0), surface, d);
 }
 
 }  // namespace sagitta::surface

@@ -90,11 +90,12 @@ struct Facets {
     constexpr void operator()() const {}
   };
 
-  // The facet that the line start + t d meets, and the t there; no_facet where it meets none.
+  // The facet that the line start + t d meets, and where; no_facet where it meets none.
   template <class T>
   struct Hit {
     std::uint32_t facet = no_facet;
     T path{};
+    Vec3<T> point{};
   };
   // `visited` is called once for every facet that is tested.
   template <class T, class Visited = NotCounted>
@@ -109,7 +110,7 @@ struct Facets {
     if (found.facet == no_facet) found = search(p, d, near, visited);
     if (found.facet == no_facet) return {};
     const T path = found.between([&](const Vec3<T>& v) { return dot(v - o, d); }, *mesh);
-    return {found.facet, to_middle + (near + path)};
+    return {found.facet, to_middle + (near + path), o + path * d};
   }
 
   template <class T, class Visited = NotCounted>
@@ -118,7 +119,7 @@ struct Facets {
     if (hit.facet == no_facet) return no_crossing<T>(Status::outside_data);
     const Facet& facet = mesh->facets[hit.facet];
     const T a = facet.slope_x, b = facet.slope_y;
-    return {hit.path, {-a, -b, T(1)}, d.z - a * d.x - b * d.y, Status::ok};
+    return {hit.path, hit.point, {-a, -b, T(1)}, d.z - a * d.x - b * d.y, Status::ok};
   }
 
  private:

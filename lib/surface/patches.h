@@ -40,9 +40,9 @@ struct Patches {
     const auto flat = facets.find(p, d);
     if (flat.facet == no_facet) return no_crossing<T>(Status::outside_data);
     Walker<T> walker{*this, flat.facet};
-    const Crossing<T> crossing = meet_from(flat.path, d.z > T(0), walker, p, d);
+    const Crossing<T> crossing = meet_from(flat.path, flat.point, d.z > T(0), walker, d);
     if (crossing.status != Status::ok) return crossing;
-    walker.height(p.x + crossing.path * d.x, p.y + crossing.path * d.y);
+    walker.height(crossing.point.x, crossing.point.y);
     return walker.beyond_rim ? no_crossing<T>(Status::outside_data) : crossing;
   }
 

@@ -40,7 +40,7 @@ template <bool centred, Deflection deflection, class Shape>
 
     const surface::Crossing<double> crossing = shape.meet(start, d);
     const bool met = crossing.status == Status::ok;
-    const Vec3<double> hit = start + crossing.path * d;
+    const Vec3<double>& hit = crossing.point;
     const double r_squared = hit.x * hit.x + hit.y * hit.y;
     const bool open = (r_squared <= setting.outer_squared) & !(r_squared < setting.inner_squared);
 
@@ -137,9 +137,10 @@ void advance(const scene::Surface& surface, int surface_number, double index_bef
                         surface.semi_diameter * surface.semi_diameter,
                         surface.inner_semi_diameter * surface.inner_semi_diameter,
                         surface_number};
-  const Deflection deflection = surface.mirror                                   ? Deflection::reflect
-                                : surface.image || index_before == index_after ? Deflection::none
-                                                                                 : Deflection::refract;
+  const Deflection deflection = surface.image                 ? Deflection::none
+                                : surface.mirror              ? Deflection::reflect
+                                : index_before == index_after ? Deflection::none
+                                                              : Deflection::refract;
   std::visit(
       [&](const auto& shape) {
         if (surface.centred)

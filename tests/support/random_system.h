@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Random prescriptions and rays for laws that hold for all of them: planes, conics and Zernike surfaces, lenses and
+// mirrors, virtual gaps, decentered and tilted, with apertures. Tame enough that most rays arrive.
+#pragma once
+
+#include <vector>
+
+#include "tests/support/point_sets.h"
+#include "tests/support/prescriptions.h"
+
+namespace sagitta::test {
+
+using tests::Uniform;
+
+struct RandomKinds {
+  bool zernike = true, mirrors = true, moved = true, apertures = true;
+};
+
+inline prescription::Shape random_shape(Uniform& u, const RandomKinds& kinds) {
+  const double kind = u(), radius = (u() < 0.5 ? -1 : 1) * 8 * std::pow(10, u()), conic_constant = u(-3, 1.2);
+  if (kind < 0.15) return {};
+  if (kind < 0.65 || !kinds.zernike) return conic_shape(radius, conic_constant);
+  std::vector<std::pair<int, double>> coefficients;
+  for (int j = 3; j <= 20; ++j)
+    if (u() < 0.5) coefficients.push_back({j, u(-3, 3)});
+  return zernike_shape(radius, conic_constant, u(6, 12), std::move(coefficients));
+}
+
+inline prescription::Model random_model(Uniform& u, const RandomKinds& kinds = {}) {
+  prescription::Model model;
+  model.wavelengths_nm = {550};
+  model.aperture.value = 4;
+  const int surface_count = 2 + static_cast<int>(u() * 6);
+  double sense = 1, index = 1;
+  for (int i = 0; i <= surface_count; ++i) {
+    const bool image = i == surface_count, mirror = kinds.mirrors && !image && u() < 0.15;
+    const bool dummy = !mirror && u() < 0.1;
+    if (mirror) sense = -sense;
+    const double medium = u() < 0.3 ? 1 : u(1, 1.9), gap = u() < 0.1 ? u(-2, 0) : u(0.5, 8);
+    if (!mirror && !dummy) index = medium;
+    prescription::Surface surface = surface_of(random_shape(u, kinds), image ? 0 : sense * gap, mirror ? 0 : index);
+    surface.stop = i == 0;
+    if (kinds.moved && u() < 0.3) surface.decenter_mm = {u(-0.5, 0.5), u(-0.5, 0.5), u(-0.2, 0.2)};
+    if (kinds.moved && u() < 0.3) {
+      const double most = u() < 0.2 ? 30 : 6;
+      surface.tilt_deg = {u(-most, most), u(-most, most), u(-180, 180)};
+    }
+    if (kinds.apertures && u() < 0.15) surface.semi_diameter_mm = u(1.5, 5);
+    if (kinds.apertures && u() < 0.05) surface.inner_semi_diameter_mm = u(0.1, 0.6);
+    model.surfaces.push_back(std::move(surface));
+  }
+  return model;
+}
+
+inline std::vector<GlobalRay> random_rays(Uniform& u, int count) {
+  std::vector<GlobalRay> rays;
+  for (int i = 0; i < count; ++i) {
+    const Vec3<double> p{u(-2.5, 2.5), u(-2.5, 2.5), u(-10, -2)}, d{u(-0.15, 0.15), u(-0.15, 0.15), 1};
+    rays.push_back({p, numerics::normalized(d)});
+  }
+  return rays;
+}
+
+}  // namespace sagitta::test
