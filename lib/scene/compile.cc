@@ -8,6 +8,8 @@
 #include <numbers>
 
 #include "lib/scene/cloud_fit.h"
+#include "lib/scene/fit_patches.h"
+#include "lib/scene/fit_radial.h"
 #include "lib/scene/triangulate.h"
 
 namespace sagitta::scene {
@@ -32,13 +34,41 @@ Wavelength compile_wavelength(const Model& model, double wavelength_nm, Findings
   return result;
 }
 
+template <surface::RadialFunction function>
+surface::Shape radial(const surface::Facets& facets, const prescription::Parameters& given, numerics::Arena& arena) {
+  auto fit = fit_radial<function>(*facets.mesh, {static_cast<int>(given.number("rings")), given.number("shape_mm")});
+  return surface::RadialPatches<function>{facets, arena.keep(std::move(fit.patches)), arena.keep(std::move(fit.nodes)),
+                                          arena.keep(std::move(fit.weights)), fit.shape_squared};
+}
+
+surface::Shape interpolate(const surface::Facets& facets, const prescription::Parameters& given, numerics::Arena& arena) {
+  using surface::RadialFunction;
+  const std::string& interpolation = given.text("interpolation");
+  if (interpolation == "linear") return facets;
+  if (interpolation == "cubic") return radial<RadialFunction::cubic>(facets, given, arena);
+  if (interpolation == "thin_plate") return radial<RadialFunction::thin_plate>(facets, given, arena);
+  if (interpolation == "multiquadric") return radial<RadialFunction::multiquadric>(facets, given, arena);
+  return surface::Patches{facets, arena.keep(fit_patches(*facets.mesh))};
+}
+
+// The facets under a shape made of points; null for other shapes.
+surface::Facets* facets_of(surface::Shape& shape) {
+  return std::visit(
+      []<class S>(S& of) -> surface::Facets* {
+        if constexpr (std::is_same_v<S, surface::Facets>) return &of;
+        else if constexpr (requires { of.facets; }) return &of.facets;
+        else return nullptr;
+      },
+      shape);
+}
+
 // A shape made of points. Its vertex curvature follows when the beam is known (fit_curvatures).
 surface::Shape compile_cloud(const prescription::Shape& given, numerics::Arena& arena, Findings& findings) {
   Triangulation made = triangulate(*given.cloud, given.parameters.number("max_edge_mm"));
   for (const auto& finding : made.findings.all()) findings.add(finding);
   if (!made.findings.all().empty()) findings.note(given.place, "named here");
   if (!made.mesh) return {};
-  return surface::Facets{&arena.keep_shared(made.mesh).mesh};
+  return interpolate(surface::Facets{&arena.keep_shared(made.mesh).mesh}, given.parameters, arena);
 }
 
 // A shape from its checked parameters, by the closed list of kinds.
@@ -128,7 +158,7 @@ void set_vertex_curvatures(const Model& model, Scene& scene) {
     for (int number = 1; number <= scene.surface_count(); ++number) {
       Surface& surface = scene.surfaces[static_cast<std::size_t>(number - 1)];
       const auto& cloud = model.surfaces[static_cast<std::size_t>(number - 1)].shape.cloud;
-      if (cloud) std::get<surface::Facets>(surface.shape).curvature = vertex_curvature(*cloud, beam_radius(number));
+      if (cloud) facets_of(surface.shape)->curvature = vertex_curvature(*cloud, beam_radius(number));
       surface.vertex_curvature = std::visit([](const auto& shape) { return shape.vertex_curvature(); }, surface.shape);
     }
   };

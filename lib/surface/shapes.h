@@ -1,22 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
-// The closed list of shapes. A new shape is one file and one line here.
+// The closed list of shapes. A new shape is one file and one line here. Those with a `kind` and `keys` are named in
+// prescriptions; the interpolations of points all come from the kind `delaunay` of Facets.
 #pragma once
 
 #include <variant>
 
 #include "lib/surface/conic.h"
 #include "lib/surface/facets.h"
+#include "lib/surface/patches.h"
 #include "lib/surface/plane.h"
+#include "lib/surface/radial.h"
 #include "lib/surface/zernike.h"
 
 namespace sagitta::surface {
 
-using Shape = std::variant<Plane, Conic, Zernike, Facets>;
+using Shape = std::variant<Plane, Conic, Zernike, Facets, Patches, RadialPatches<RadialFunction::cubic>,
+                           RadialPatches<RadialFunction::thin_plate>, RadialPatches<RadialFunction::multiquadric>>;
 
-// Calls visit with a default value of every kind of shape, in order: visit(Plane{}), visit(Conic{}), ...
+// Calls visit with a default value of every shape that prescriptions name, in order: visit(Plane{}), visit(Conic{}), ...
 template <class Visit, class... Shapes>
 void for_each_kind(const std::variant<Shapes...>&, Visit&& visit) {
-  (visit(Shapes{}), ...);
+  const auto visit_named = [&]<class S>(S shape) {
+    if constexpr (requires { S::kind; }) visit(shape);
+  };
+  (visit_named(Shapes{}), ...);
 }
 template <class Visit>
 void for_each_shape_kind(Visit&& visit) {
