@@ -73,7 +73,7 @@ std::vector<ExrPart> wavefront_parts(const Report& report) {
     part.attributes.push_back({"sign", "OPD = OPL(chief ray) - OPL(ray), both to the reference sphere"});
     part.attributes.push_back({"mask", "0 ok, 1 missed, 2 clipped, 3 total_reflection, 4 outside_data, 5 not_converged, 255 outside the pupil"});
     part.attributes.push_back({"pixel_size_mm", std::array{pixel, pixel}});
-    part.attributes.push_back({"centre_mm", std::array{0.0f, 0.0f}});
+    part.attributes.push_back({"centre_mm", std::array{-pixel / 2, -pixel / 2}});  // the chief ray's sample is column N/2
     part.attributes.push_back({"grid", fmt::format("column i and row N-1-j stand at (i - N/2, j - N/2)/(N/2 - 1) of the unit pupil, N = {}; x right, y up", wavefront.size)});
     part.attributes.push_back({"pupil_semi_diameter_mm", semi_diameter});
     part.attributes.push_back({"reference_sphere_radius_mm", wavefront.reference_radius});
