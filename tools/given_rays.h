@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rays that the user gives: a CSV file with a header line that names the columns x_mm,y_mm,z_mm,l,m,n and, where wanted,
-// wavelength_nm, in any order (others are ignored). Global frame, direction cosines.
+// wavelength_nm, in any order. The other columns of the listing that `sagitta rays` prints are passed over, so its rows
+// can be sent on; any other column is an error. Global frame, direction cosines.
 #pragma once
 
 #include <string>

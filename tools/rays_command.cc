@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <map>
 #include <optional>
 #include <span>
+#include <system_error>
 
 #include "lib/trace/pattern.h"
 #include "lib/trace/trace.h"
@@ -71,6 +73,9 @@ std::string quoted(const std::string& name) {
   return result + '"';
 }
 
+// Rays that are traced and held at a time.
+constexpr std::size_t most_at_once = 1024;
+
 class Listing {
  public:
   Listing(const prescription::Model& model, const scene::Scene& scene) : scene_(scene) {
@@ -96,7 +101,7 @@ class Listing {
       }
     }
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      std::fputs(rows[i].c_str(), stdout);
+      if (std::fputs(rows[i].c_str(), stdout) < 0) throw std::system_error(errno, std::generic_category());
       any_arrived_ = any_arrived_ || rays.ended[i] == 0;
     }
   }
@@ -121,12 +126,14 @@ int print_launched(const RaysOptions& options, prescription::Model model, std::s
   std::size_t number = 0;
   for (std::size_t field = 0; field < scene.fields.size(); ++field) {
     if (options.field && field != static_cast<std::size_t>(*options.field)) continue;
-    for (std::size_t w = 0; w < scene.wavelengths.size(); ++w) {
-      std::vector<std::size_t> numbers(pupil.size());
-      for (std::size_t& one : numbers) one = ++number;
-      listing.print(launch(scene, scene.fields[field], scene.wavelengths[w].index.front(), pupil), field,
-                    model.wavelengths_nm[w], scene.wavelengths[w], numbers);
-    }
+    for (std::size_t w = 0; w < scene.wavelengths.size(); ++w)
+      for (std::size_t from = 0; from < pupil.size(); from += most_at_once) {
+        const auto part = pupil.subspan(from, std::min(most_at_once, pupil.size() - from));
+        std::vector<std::size_t> numbers(part.size());
+        for (std::size_t& one : numbers) one = ++number;
+        listing.print(launch(scene, scene.fields[field], scene.wavelengths[w].index.front(), part), field,
+                      model.wavelengths_nm[w], scene.wavelengths[w], numbers);
+      }
   }
   return listing.any_arrived() ? 0 : 1;
 }
@@ -145,7 +152,6 @@ int print_given(const RaysOptions& options, prescription::Model model) {
   const auto compiled = load_scene(model);
   if (!compiled) return 1;
 
-  constexpr std::size_t most_at_once = 4096;
   Listing listing(model, *compiled->scene);
   for (std::size_t from = 0, to = 0; from < given.size(); from = to) {
     const double nm = given[from].wavelength_nm;

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The program: the command line in, one command out.
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <csignal>
+#include <cstdio>
+#include <new>
+#include <system_error>
 
 #include "tools/commands.h"
 
@@ -67,8 +71,15 @@ int main(int argc, char** argv) {
   add_check(app, status);
   try {
     app.parse(argc, argv);
+    if (std::fflush(stdout) != 0) throw std::system_error(errno, std::generic_category());
   } catch (const CLI::ParseError& fault) {
     return app.exit(fault) == 0 ? 0 : 2;
+  } catch (const std::bad_alloc&) {
+    std::fputs("sagitta: not enough memory: ask for fewer fields, wavelengths or points in one run\n", stderr);
+    return 1;
+  } catch (const std::system_error& fault) {
+    std::fprintf(stderr, "sagitta: standard output cannot be written: %s\n", fault.code().message().c_str());
+    return 1;
   }
   return status;
 }

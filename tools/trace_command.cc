@@ -90,13 +90,10 @@ int trace_command(const TraceOptions& options) {
   fmt::print("{}", options.json ? summary : summary_text(report));
   if (!all_written) return 1;
 
-  trace::StatusCounts all;
-  for (const auto& result : report.results)
-    for (std::size_t i = 0; i < all.of.size(); ++i) all.of[i] += result.rays.of[i];
-  // With --only wavefront no ray is launched where there can be no wavefront; the summary gives the reason.
-  const bool none_arrived = all.total() > 0 && all[surface::Status::ok] == 0;
-  if (none_arrived) fmt::print(stderr, "sagitta trace: not one ray arrived at the image surface\n");
-  return none_arrived ? 1 : 0;
+  const bool any_arrived = std::any_of(report.results.begin(), report.results.end(),
+                                       [](const auto& result) { return result.rays[surface::Status::ok] > 0; });
+  if (!any_arrived) fmt::print(stderr, "sagitta trace: not one ray arrived at the image surface\n");
+  return any_arrived ? 0 : 1;
 }
 
 }  // namespace sagitta::tools

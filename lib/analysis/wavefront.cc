@@ -86,49 +86,57 @@ void measure(Wavefront& result, const std::vector<Sample>& samples, double wavel
   result.zernike = fit_zernike(samples, request.indexing, request.zernike_terms);
 }
 
+// Where the chief ray meets the image surface, and the sphere about that point; a reason where there is none.
+struct ReferenceResult {
+  ReferenceSphere sphere;
+  std::string reason;
+};
+
+ReferenceResult reference_sphere(const scene::Scene& scene, const scene::Wavelength& wavelength, const scene::Field& field) {
+  const scene::FirstOrder paraxial = first_order(scene, wavelength, nan);
+  const int image = scene.surface_count();
+  if (!(std::abs(paraxial.image_z) <= afocal_distance)) return {{}, "the image is afocal"};
+  const RayBatch chief = trace_chief(scene, wavelength, field);
+  if (chief.ended[0] != 0)
+    return {{}, fmt::format("the chief ray is lost: {} at surface {}",
+                            surface::status_names[static_cast<std::size_t>(chief.status(0))], chief.ended_at(0))};
+  ReferenceSphere sphere{chief.position(0), 0, chief.opl[0], wavelength.index[static_cast<std::size_t>(image - 1)]};
+  sphere.radius = (paraxial.exit_pupil.z - trace::global_position(scene, image, chief, 0).z) /
+                  trace::global_direction(scene, image, chief, 0).z;
+  if (!(sphere.radius != 0)) return {{}, "the exit pupil lies in the image: the reference sphere has no radius"};
+  return {sphere, {}};
+}
+
 }  // namespace
 
 WavefrontResult wavefront(const scene::Scene& scene, const scene::Wavelength& wavelength, const scene::Field& field,
                           const WavefrontRequest& request) {
-  const scene::FirstOrder paraxial = first_order(scene, wavelength, nan);
-  const int image = scene.surface_count();
-  if (!(std::abs(paraxial.image_z) <= afocal_distance)) return {{}, "the image is afocal", {}};
-  const RayBatch chief = trace_chief(scene, wavelength, field);
-  if (chief.ended[0] != 0)
-    return {{}, fmt::format("the chief ray is lost: {} at surface {}",
-                            surface::status_names[static_cast<std::size_t>(chief.status(0))], chief.ended_at(0)), {}};
-
-  ReferenceSphere sphere{chief.position(0), 0, chief.opl[0], wavelength.index[static_cast<std::size_t>(image - 1)]};
-  sphere.radius = (paraxial.exit_pupil.z - trace::global_position(scene, image, chief, 0).z) /
-                  trace::global_direction(scene, image, chief, 0).z;
-  if (!(sphere.radius != 0)) return {{}, "the exit pupil lies in the image: the reference sphere has no radius", {}};
-
   Wavefront result;
   result.size = request.size;
-  result.reference_radius = sphere.radius;
   const std::vector<trace::PupilPoint> points = grid_points(request.size, result.mask);
   RayBatch rays = launch(scene, field, wavelength.index.front(), points);
   trace::trace(scene, wavelength, rays, request.thread_count);
+  const ReferenceResult reference = reference_sphere(scene, wavelength, field);
+  if (!reference.reason.empty()) return {{}, reference.reason, count_statuses(rays)};
 
+  result.reference_radius = reference.sphere.radius;
   result.opd_waves.assign(result.mask.size(), nan);
   std::vector<Sample> samples;  // in um
-  trace::StatusCounts counts;
   for (std::size_t pixel = 0, ray = 0; pixel < result.mask.size(); ++pixel) {
     if (result.mask[pixel] == outside_pupil) continue;
-    std::int32_t ended = rays.ended[ray];
-    if (ended == 0) {
-      const double opd_um = optical_path_difference(sphere, rays, ray) * 1e3;
+    if (rays.ended[ray] == 0) {
+      const double opd_um = optical_path_difference(reference.sphere, rays, ray) * 1e3;
       if (std::isfinite(opd_um)) {
         samples.push_back({points[ray].x, points[ray].y, opd_um});
         result.opd_waves[pixel] = opd_um / wavelength.wavelength_um;
       } else {
-        ended = trace::ending(image, Status::missed);  // the reference sphere
+        rays.ended[ray] = trace::ending(scene.surface_count(), Status::missed);  // the reference sphere
       }
     }
-    result.mask[pixel] = static_cast<std::uint32_t>(ended % 8);
-    counts.add(ended);
+    result.mask[pixel] = static_cast<std::uint32_t>(rays.status(ray));
     ++ray;
   }
+  const trace::StatusCounts counts = count_statuses(rays);
   if (samples.empty()) return {{}, "no ray of the pupil grid arrived", counts};
   measure(result, samples, wavelength.wavelength_um, request);
   return {std::move(result), {}, counts};

@@ -52,7 +52,7 @@ struct Wavefront {
 struct WavefrontResult {
   std::optional<Wavefront> wavefront;
   std::string reason;         // why there is none
-  trace::StatusCounts rays;   // of the grid; none where the chief ray already had no answer
+  trace::StatusCounts rays;   // of the grid
 };
 
 WavefrontResult wavefront(const scene::Scene& scene, const scene::Wavelength& wavelength, const scene::Field& field,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "lib/output/report.h"
 
@@ -84,7 +85,7 @@ std::vector<ExrPart> wavefront_parts(const Report& report) {
 }
 
 Figure spot_figure(const Report& report) {
-  Figure figure{report.system + ": spots", "circle: RMS radius about the centroid; sagitta " + report.version, {}, static_cast<int>(std::min<std::size_t>(3, report.wavelengths_nm.size()))};
+  Figure figure{"Spots: " + report.system, "circle: RMS radius about the centroid; sagitta " + report.version, {}, static_cast<int>(std::min<std::size_t>(3, report.wavelengths_nm.size()))};
   if (report.wavelengths_nm.size() == 1) figure.columns = static_cast<int>(std::min<std::size_t>(3, report.fields.size()));
   for (const auto& result : report.results) {
     const analysis::SpotImage& image = *result.spot_image;
@@ -106,7 +107,7 @@ Figure spot_figure(const Report& report) {
 }
 
 Figure wavefront_figure(const Report& report) {
-  Figure figure{report.system + ": wavefronts, OPD = OPL(chief) − OPL(ray)", "sagitta " + report.version, {}, 3};
+  Figure figure{"Wavefronts, OPD = OPL(chief) − OPL(ray): " + report.system, "sagitta " + report.version, {}, 3};
   figure.columns = static_cast<int>(std::min<std::size_t>(3, report.wavelengths_nm.size() == 1 ? report.fields.size() : report.wavelengths_nm.size()));
   for (const auto& result : report.results) {
     Panel panel;
@@ -126,6 +127,8 @@ Figure wavefront_figure(const Report& report) {
       panel.axes.center_x = -pixel / 2;
       panel.axes.center_y = -pixel / 2;
     } else {
+      panel.map = {2, 2, std::vector<float>(4, std::numeric_limits<float>::quiet_NaN())};
+      panel.axes.pixel_width = panel.axes.pixel_height = report.first_order.entrance_pupil.semi_diameter;
       panel.empty_note = result.wavefront->reason;
     }
     figure.panels.push_back(std::move(panel));

@@ -72,6 +72,13 @@ Surface read_surface(const Section& section, bool is_last, const std::string& fo
   check_thickness(section, surface, is_last, findings);
   const MediumReader::Read after = media.read(section.find("medium"));
   if (!after.is_mirror) surface.medium = after.medium;
+  if (const YamlNode* given = section.find("medium"); is_last && given) {
+    if (after.is_mirror)
+      findings.error(given->place, "the last surface cannot be a mirror",
+                     "it is the image surface, where rays end: add a surface for the image behind the mirror");
+    else
+      findings.warning(given->place, "the medium behind the last surface plays no part", "rays end on the image surface");
+  }
   surface.semi_diameter_mm = section.number("semi_diameter_mm").value_or(surface.semi_diameter_mm);
   surface.inner_semi_diameter_mm = section.number("inner_semi_diameter_mm").value_or(0);
   if (!(surface.inner_semi_diameter_mm < surface.semi_diameter_mm))

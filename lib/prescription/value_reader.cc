@@ -58,6 +58,9 @@ std::string number_hint(const YamlNode& node) {
   const std::size_t end = text.find_first_not_of("+-.0123456789");
   if (end == std::string::npos || !parse_number(std::string_view(text).substr(0, end)).ok) return {};
   if (text[end] == ',') return "decimals are written with a point";
+  const std::string_view rest = std::string_view(text).substr(std::min(text.find_first_not_of(' ', end), text.size()));
+  constexpr std::array units{"mm", "um", "µm", "nm", "cm", "m", "deg", "degrees", "°", "d", "D", "in", "waves", "mm^-1", "1/mm", "%"};
+  if (std::find(units.begin(), units.end(), rest) == units.end()) return {};
   return fmt::format("write {}: units stand in the names of keys, not with the numbers", excerpt(text.substr(0, end)));
 }
 

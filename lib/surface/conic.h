@@ -20,7 +20,8 @@
 // miss if D < 0 or if n_z <= 0 there (beyond the equator, or on the other sheet).
 //
 // Errors. The line is first moved to its point nearest the vertex, e = -p.d, so a start 1e9 mm away costs only the
-// rounding of p + e d itself; (3) holds wherever the line starts, so that rounding is not amplified. No term of (5)
+// rounding of p + e d itself; (3) holds wherever the line starts, so that rounding is not amplified. The path is
+// measured between start and hit, not summed as e + t: what rounding moves a hit along the ray, the next path takes back. No term of (5)
 // divides by c or by 1+K: K = -1, a plane and 1e12 mm radii take the same path as any sphere.
 //
 // Source: the vector form of Spencer and Murty, J. Opt. Soc. Am. 52, 672 (1962), eqs. 15 to 23, with its root chosen
@@ -81,13 +82,11 @@ struct Conic {
     const T along = d.z < T(0) ? -root : root;
     const T s_B = d.z < T(0) ? -B : B;
     const T t = (s_B >= T(0) ? C : B - along) / (s_B >= T(0) ? B + along : A);  // (5)
-    const T nz = T(1) - one_plus_K * c * (p.z + t * d.z);                     // (4)
+    const Vec3<T> point = p + t * d;
+    const T nz = T(1) - one_plus_K * c * point.z;                             // (4)
     const bool hit = (nz > T(0)) & (t - t == T(0));                              // t - t: neither NaN nor infinite
-    const T path = hit ? e + t : not_a_number<T>();
-    return {path,
-            {-c * (p.x + t * d.x), -c * (p.y + t * d.y), nz},
-            along,
-            hit ? Status::ok : Status::missed};
+    const T path = hit ? dot(point - start, d) : not_a_number<T>();
+    return {path, point, {-c * point.x, -c * point.y, nz}, along, hit ? Status::ok : Status::missed};
   }
 };
 

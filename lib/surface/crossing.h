@@ -35,6 +35,7 @@ struct Gradient {
 template <class T>
 struct Crossing {
   T path;           // t in mm, of either sign; NaN unless status is ok
+  Vec3<T> point;    // p + t d, formed without the rounding of a long path; NaN likewise
   Vec3<T> normal;   // not normalised; its z component is positive (the side that light enters when it travels to +z is
                     // the side the normal does not point to)
   T along;          // d . normal, from the cheapest accurate source; its sign tells the side the ray comes from
@@ -48,7 +49,8 @@ constexpr T not_a_number() {
 
 template <class T>
 constexpr Crossing<T> no_crossing(Status status) {
-  return {not_a_number<T>(), {not_a_number<T>(), not_a_number<T>(), not_a_number<T>()}, not_a_number<T>(), status};
+  const T nan = not_a_number<T>();
+  return {nan, {nan, nan, nan}, {nan, nan, nan}, nan, status};
 }
 
 }  // namespace sagitta::surface

@@ -40,7 +40,7 @@ Crossing<T> meet_departure(const Conic& base, const Surface& surface, const Vec3
   using std::abs;
   const Crossing<T> start = base.meet(p, d);
   if (start.status != Status::ok) return start;
-  const Vec3<T> origin = p + start.path * d;
+  const Vec3<T> origin = start.point;
   const T eps = std::numeric_limits<T>::epsilon();
 
   T t(0);
@@ -58,9 +58,9 @@ Crossing<T> meet_departure(const Conic& base, const Surface& surface, const Vec3
     const T scale = abs(origin.x) + abs(origin.y) + abs(origin.z) + abs(t);
     if (abs(f) <= rounding || abs(step) <= T(4) * eps * scale) {
       const bool same_sense = (slope > T(0)) == (start.along > T(0));
-      const T path = start.path + (abs(f) <= rounding ? t : t + step);  // the last step is free
+      const T last = abs(f) <= rounding ? t : t + step;  // the last step is free
       if (!(abs(f) <= T(64) * rounding + abs(slope) * T(8) * eps * scale) || !same_sense) break;
-      return {path, {-h.dz_dx, -h.dz_dy, T(1)}, slope, Status::ok};
+      return {start.path + last, origin + last * d, {-h.dz_dx, -h.dz_dy, T(1)}, slope, Status::ok};
     }
     if (f < T(0)) {
       below = t;

@@ -92,7 +92,7 @@ struct Facets {
     const Facet& facet = mesh->facets[found.facet];
     const T a = facet.slope_x, b = facet.slope_y;
     const T path = found.between([&](const Vec3<T>& v) { return dot(v - o, d); }, *mesh);
-    return {to_middle + (near + path), {-a, -b, T(1)}, d.z - a * d.x - b * d.y, Status::ok};
+    return {to_middle + (near + path), o + path * d, {-a, -b, T(1)}, d.z - a * d.x - b * d.y, Status::ok};
   }
 
  private:

@@ -32,7 +32,7 @@ struct Plane {
   Crossing<T> meet(const Vec3<T>& p, const Vec3<T>& d) const {
     const T t = -p.z / d.z;
     const bool hit = t - t == T(0);  // neither NaN nor infinite
-    return {hit ? t : not_a_number<T>(), {T(0), T(0), T(1)}, d.z, hit ? Status::ok : Status::missed};
+    return {hit ? t : not_a_number<T>(), {p.x + t * d.x, p.y + t * d.y, T(0)}, {T(0), T(0), T(1)}, d.z, hit ? Status::ok : Status::missed};
   }
 };
 

@@ -35,6 +35,13 @@ struct IndexRatio {
   }
 };
 
+// One step of Newton's iteration for 1/|d|: a direction within rounding of unit length comes within half an ulp or so, and
+// errors of length, which would be errors of path, do not add up from surface to surface.
+template <class T>
+numerics::Vec3<T> with_unit_length(const numerics::Vec3<T>& d) {
+  return (T(1.5) - T(0.5) * dot(d, d)) * d;
+}
+
 // `along` is d.n. NaN in every component: total reflection.
 template <class T>
 numerics::Vec3<T> refract(const numerics::Vec3<T>& d, const numerics::Vec3<T>& normal, const T& along,
@@ -44,12 +51,12 @@ numerics::Vec3<T> refract(const numerics::Vec3<T>& d, const numerics::Vec3<T>& n
   const T v = mu * along;
   const T w = sqrt(q * dot(normal, normal) + v * v);
   const T magnitude = q / (w + (along < T(0) ? -v : v));  // (1)
-  return mu * d + (along < T(0) ? -magnitude : magnitude) * normal;
+  return with_unit_length(mu * d + (along < T(0) ? -magnitude : magnitude) * normal);
 }
 
 template <class T>
 numerics::Vec3<T> reflect(const numerics::Vec3<T>& d, const numerics::Vec3<T>& normal, const T& along) {
-  return d - (T(2) * along / dot(normal, normal)) * normal;  // (2)
+  return with_unit_length(d - (T(2) * along / dot(normal, normal)) * normal);  // (2)
 }
 
 }  // namespace sagitta::surface

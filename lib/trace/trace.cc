@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -33,7 +34,11 @@ void trace(const scene::Scene& scene, const scene::Wavelength& wavelength, RayBa
   std::size_t workers = thread_count > 0 ? static_cast<std::size_t>(thread_count) : std::max(1u, std::thread::hardware_concurrency());
   workers = std::min(workers, (block_count + 3) / 4);  // a thread is worth starting for four blocks or more
   std::vector<std::jthread> helpers;
-  for (std::size_t i = 1; i < workers; ++i) helpers.emplace_back(work);
+  try {
+    for (std::size_t i = 1; i < workers; ++i) helpers.emplace_back(work);
+  } catch (const std::system_error&) {
+    // The machine gives no more threads: those at hand do the work, with the same results.
+  }
   work();
 }
 

@@ -249,7 +249,7 @@ TEST(Wavefront, rms_and_peak_to_valley_are_those_of_the_samples) {
     for (const double opd : result.wavefront->opd_waves)
       if (!std::isnan(opd)) squares += (opd - sum / count) * (opd - sum / count);
     EXPECT_NEAR(result.wavefront->rms_waves, std::sqrt(squares / count), 1e-12 * high);
-    EXPECT_EQ(result.wavefront->peak_to_valley_waves, high - low);
+    EXPECT_DOUBLE_EQ(result.wavefront->peak_to_valley_waves, high - low);
     EXPECT_EQ(count, result.rays[Status::ok]);
   }
 }

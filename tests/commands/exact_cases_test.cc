@@ -237,6 +237,16 @@ TEST(ExactCases, A21_object_at_1e15_mm_is_as_good_as_one_at_infinity) {
   }
 }
 
+// 2026-11-22: a ray started at z = -1e9 was returned 5.6e-8 mm off the sphere, at -1e15 on its vertex plane (z = 0): the hit
+// was formed as start + path * d. The sag of R = 50 at 1 mm, in 50 digits.
+TEST(ExactCases, ray_from_far_away_lies_on_the_surface) {
+  const double sag = 0.010001000200050014003;
+  for (const double z : {-1e4, -1e9, -1e12, -1e15}) {
+    const auto rows = trace_given(system_of("", "  - {stop: true, conic: {radius_mm: 50}, thickness_mm: 5}\n  - {}\n"), {axial_ray(1, z)});
+    EXPECT_NEAR(rows.at(0).z, sag, 8 * ulp(sag)) << z;
+  }
+}
+
 TEST(ExactCases, A23_two_mirror_telescopes) {
   const double f1 = 1000, f = 8000, d = 750, k = (f1 - d) / f1, m = f / f1;
   const double R2 = 2 * m * k * f1 / (m - 1), cassegrain_K2 = -std::pow((m + 1) / (m - 1), 2);

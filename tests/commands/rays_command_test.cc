@@ -139,7 +139,7 @@ TEST(RaysCommand, all_errors_of_a_file_of_rays_come_with_their_places) {
   EXPECT_THAT(several, HasSubstr(file + ":6:14: error: wavelength_nm: '-4' is not a positive finite number"));
   EXPECT_THAT(several, HasSubstr(file + ":7:3: error: y_mm: 'nan' is not a finite number"));
   EXPECT_THAT(errors("x_mm,y_mm,z_mm,l,m\n0,0,0,0,0\n"), HasSubstr(file + ":1:1: error: no column 'n'"));
-  EXPECT_THAT(errors(""), HasSubstr(file + ":1:1: error: holds no ray"));
+  EXPECT_THAT(errors(""), HasSubstr(file + ":1:1: error: the file is empty"));
   EXPECT_THAT(errors("x_mm,y_mm,z_mm,l,m,n\n"), HasSubstr("holds no ray"));
   EXPECT_THAT(errors("x_mm,y_mm,z_mm,l,m,n\n0,0,0,0,0,0\n"), HasSubstr(":2:7: error: the direction (l, m, n) has the length 0"));
   EXPECT_THAT(errors("x_mm,y_mm,z_mm,l,m,n,wavelength_nm\n0,0,-5,0,0,1,99\n"), HasSubstr("99 nm lies outside the range of N-BK7"));
@@ -148,7 +148,7 @@ TEST(RaysCommand, all_errors_of_a_file_of_rays_come_with_their_places) {
   EXPECT_LT(errors(many).size(), 10000u);  // there is an end to it
   const Outcome none = run_program("rays " + system + " --from " + folder.path("none.csv"));
   EXPECT_EQ(none.status, 1);
-  EXPECT_THAT(none.err, HasSubstr("none.csv:1:1: error: cannot be read"));
+  EXPECT_THAT(none.err, HasSubstr("none.csv:1:1: error: there is no such file"));
 }
 
 TEST(RaysCommand, wrong_usage_is_2_and_wrong_input_1) {

@@ -149,7 +149,7 @@ surfaces:
   - {thickness_mm: 1, medium: N-BK7}
   - {thickness_mm: 1, medium: air}
   - {thickness_mm: 1}
-  - {medium: N-BK7}
+  - {}
 )");
   const auto index_after = [&](std::size_t i) { return model.surfaces[i].medium->index(0.5875618); };
   EXPECT_EQ(index_after(0), 1.376);
