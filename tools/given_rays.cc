@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <set>
 #include <string_view>
 
 #include "lib/prescription/yaml_tree.h"
@@ -146,8 +147,9 @@ std::vector<GivenRay> read_given_rays(const std::string& file, double default_wa
 
 bool set_wavelengths(prescription::Model& model, const std::vector<double>& wavelengths_nm, const std::string& source) {
   bool covered = true;
+  std::set<std::pair<std::string, double>> told;
   const auto check = [&](const medium::Medium& medium, double nm) {
-    if (medium.covers(nm / 1000)) return;
+    if (medium.covers(nm / 1000) || !told.emplace(medium.name, nm).second) return;
     covered = false;
     fmt::print(stderr, "sagitta rays: {}: {:g} nm lies outside the range of {}, {:g} to {:g} nm\n", source, nm, medium.name,
                medium.shortest_um * 1e3, medium.longest_um * 1e3);

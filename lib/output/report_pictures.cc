@@ -72,10 +72,12 @@ std::vector<ExrPart> wavefront_parts(const Report& report) {
     part.attributes.push_back({"units.Y", "waves"});
     part.attributes.push_back({"sign", "OPD = OPL(chief ray) - OPL(ray), both to the reference sphere"});
     part.attributes.push_back({"mask", "0 ok, 1 missed, 2 clipped, 3 total_reflection, 4 outside_data, 5 not_converged, 255 outside the pupil"});
-    part.attributes.push_back({"pixel_size_mm", std::array{pixel, pixel}});
-    part.attributes.push_back({"centre_mm", std::array{0.0f, 0.0f}});
+    if (std::isfinite(semi_diameter)) {  // a telecentric beam has no pupil of finite size
+      part.attributes.push_back({"pixel_size_mm", std::array{pixel, pixel}});
+      part.attributes.push_back({"centre_mm", std::array{-pixel / 2, -pixel / 2}});  // the chief ray's sample is column N/2
+      part.attributes.push_back({"pupil_semi_diameter_mm", semi_diameter});
+    }
     part.attributes.push_back({"grid", fmt::format("column i and row N-1-j stand at (i - N/2, j - N/2)/(N/2 - 1) of the unit pupil, N = {}; x right, y up", wavefront.size)});
-    part.attributes.push_back({"pupil_semi_diameter_mm", semi_diameter});
     part.attributes.push_back({"reference_sphere_radius_mm", wavefront.reference_radius});
     part.attributes.push_back({"rms_waves", wavefront.rms_waves});
     part.attributes.push_back({"peak_to_valley_waves", wavefront.peak_to_valley_waves});
@@ -109,8 +111,11 @@ Figure spot_figure(const Report& report) {
 Figure wavefront_figure(const Report& report) {
   Figure figure{"Wavefronts, OPD = OPL(chief) − OPL(ray): " + report.system, "sagitta " + report.version, {}, 3};
   figure.columns = static_cast<int>(std::min<std::size_t>(3, report.wavelengths_nm.size() == 1 ? report.fields.size() : report.wavelengths_nm.size()));
+  const bool has_size = std::isfinite(report.first_order.entrance_pupil.semi_diameter);
+  const double pupil = has_size ? report.first_order.entrance_pupil.semi_diameter : 1;  // telecentric: the unit disc
   for (const auto& result : report.results) {
     Panel panel;
+    panel.axes.unit_mm = has_size;
     panel.title = panel_title(report, result);
     panel.color_map = ColorMap::diverging;
     panel.quantity = "OPD";
@@ -121,14 +126,14 @@ Figure wavefront_figure(const Report& report) {
       const analysis::Wavefront& wavefront = *result.wavefront->wavefront;
       panel.subtitle = {fmt::format("RMS {:.4g}, P-V {:.4g} waves", wavefront.rms_waves, wavefront.peak_to_valley_waves)};
       panel.map = {wavefront.size, wavefront.size, floats(wavefront.opd_waves)};
-      const double pixel = report.first_order.entrance_pupil.semi_diameter / (wavefront.size / 2 - 1);
+      const double pixel = pupil / (wavefront.size / 2 - 1);
       // the chief ray's sample is column N/2, so the middle of the map lies half a pixel before it (above it in y)
       panel.axes.pixel_width = panel.axes.pixel_height = pixel;
       panel.axes.center_x = -pixel / 2;
       panel.axes.center_y = -pixel / 2;
     } else {
       panel.map = {2, 2, std::vector<float>(4, std::numeric_limits<float>::quiet_NaN())};
-      panel.axes.pixel_width = panel.axes.pixel_height = report.first_order.entrance_pupil.semi_diameter;
+      panel.axes.pixel_width = panel.axes.pixel_height = pupil;
       panel.empty_note = result.wavefront->reason;
     }
     figure.panels.push_back(std::move(panel));

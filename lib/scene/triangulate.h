@@ -17,7 +17,8 @@
 // The same points in the same order give the same mesh. Where points lie on a common circle (a regular grid) the
 // diagonal is arbitrary.
 //
-// Source: freeform.md of the project's specification; Delaunay triangulation by exact predicates, CGAL 5.5.
+// Source: the peeling rule is this project's own (a rule by nearest-neighbour spacing would remove the apex of ring data and
+// most of a scan); Delaunay triangulation by exact predicates, CGAL 5.5.
 #pragma once
 
 #include <cstdint>

@@ -146,7 +146,10 @@ TEST(TraceCommand, wavefront_file_holds_the_map_and_its_mask) {
     EXPECT_NEAR(high - low, wavefront["peak_to_valley_waves"].get<double>(), 1e-5);
     EXPECT_EQ(part.text("units.Y"), "waves");
     EXPECT_THAT(part.text("sign"), HasSubstr("OPL(chief ray) - OPL(ray)"));
+    // The middle of the picture, as for spots: half a pixel before the chief ray's sample, which is at column 32, row 31.
     EXPECT_FLOAT_EQ(part.pair("pixel_size_mm").x, 4.0f / 31);
+    EXPECT_FLOAT_EQ(part.pair("centre_mm").x, -2.0f / 31);
+    EXPECT_FLOAT_EQ(part.pair("centre_mm").y, -2.0f / 31);
     EXPECT_EQ(part.number("wavelength_nm"), i % 2 == 0 ? 550 : 633);
     EXPECT_EQ(part.number("rays_launched"), 3001);
   }
