@@ -60,7 +60,7 @@ TEST(ExactCases, A2_ellipsoid_focuses_parallel_light_inside) {
     EXPECT_LE(std::abs(row.y), 24e-12);
     EXPECT_NEAR(row.opl, 32.064, 4 * ulp(32));
   }
-  const RayRow& h3 = at_surface(rows, 1)[1];
+  const RayRow h3 = at_surface(rows, 1)[1];
   EXPECT_NEAR(h3.z, 0.7669633558066549064031359673313802990944, 8 * ulp(0.77));
   EXPECT_NEAR(h3.m, -0.1280632427141826239525522534794143864761, 4e-16);
   EXPECT_EQ(rows.back().status, "missed");  // beyond the rim at 9.1022

@@ -195,7 +195,7 @@ TEST(Reader, FindsThePointsBesideThePrescriptionThenInTheDataFolder) {
   const Shape& cornea = from_beside.model->surfaces[0].shape;
   EXPECT_EQ(cornea.cloud->points.size(), 3u);
   EXPECT_EQ(cornea.parameters.text("format"), "xyz");
-  EXPECT_EQ(cornea.parameters.text("interpolation"), "linear");
+  EXPECT_EQ(cornea.parameters.text("interpolation"), "c1");
   EXPECT_EQ(cornea.parameters.number("max_edge_mm"), infinity);
 }
 
