@@ -85,8 +85,8 @@ struct Conic {
     const Vec3<T> point = p + t * d;
     const T nz = T(1) - one_plus_K * c * point.z;                             // (4)
     const bool hit = (nz > T(0)) & (t - t == T(0));                              // t - t: neither NaN nor infinite
-    const T path = hit ? dot(point - start, d) : not_a_number<T>();
-    return {path, point, {-c * point.x, -c * point.y, nz}, along, hit ? Status::ok : Status::missed};
+    const T path = dot(point - start, d);  // formed whether or not there is a hit: loops over rays have no branches
+    return {hit ? path : not_a_number<T>(), point, {-c * point.x, -c * point.y, nz}, along, hit ? Status::ok : Status::missed};
   }
 };
 

@@ -40,7 +40,7 @@ template <bool centred, Deflection deflection, class Shape>
 
     const surface::Crossing<double> crossing = shape.meet(start, d);
     const bool met = crossing.status == Status::ok;
-    const Vec3<double>& hit = crossing.point;
+    const Vec3<double> hit = crossing.point;
     const double r_squared = hit.x * hit.x + hit.y * hit.y;
     const bool open = (r_squared <= setting.outer_squared) & !(r_squared < setting.inner_squared);
 
