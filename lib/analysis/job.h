@@ -35,8 +35,9 @@ struct JobResult {
   trace::StatusCounts rays;                // of the spot's rays, or of the wavefront's where only that is asked for
   std::vector<Coverage> coverage;          // of every surface made of data, by the same rays
   std::optional<Spot> spot;
-  std::optional<SpotImage> spot_image;     // one pixel size for the whole job; centred, for all wavelengths of a field,
-                                           // on the centroid of the first one that has rays
+  std::optional<SpotImage> spot_image;     // one pixel size for the whole job; centred, for all wavelengths of a field, on
+                                           // the centroid of some pilot rays of the first one that has any: near the
+                                           // spot's own centroid, not on it
   std::optional<WavefrontResult> wavefront;
 };
 

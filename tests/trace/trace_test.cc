@@ -163,6 +163,21 @@ TEST(Trace, the_image_surface_ends_rays_undeflected_whatever_its_medium) {
   }
 }
 
+// The reader refuses a mirror there; a scene made otherwise must not deflect either (a mutant that refracts or reflects).
+TEST(Trace, the_image_surface_of_a_scene_does_not_deflect_even_if_it_is_a_mirror) {
+  const CompiledScene compiled = scene_of("  - {stop: true, thickness_mm: 5, medium: {index: 1.5}}\n  - {conic: {radius_mm: -20}}\n");
+  scene::Scene scene = compiled.scene;
+  scene.surfaces.back().mirror = true;
+  scene::Wavelength wavelength = compiled.wavelength();
+  wavelength.index.back() = 1.7;
+  const Vec3<double> d = numerics::normalized(Vec3<double>{0.1, 0.2, 1});
+  RayBatch batch = batch_of({{{0, 1, -4}, d}});
+  trace::trace(scene, wavelength, batch);
+  EXPECT_EQ(batch.ended[0], 0);
+  EXPECT_NEAR(batch.m[0], d.y / 1.5, 1e-15);
+  EXPECT_GT(batch.n[0], 0);
+}
+
 // The path to the image surface counts in the medium before it.
 TEST(Trace, paths_count_in_the_medium_before_the_surface) {
   const CompiledScene compiled = scene_of("  - {stop: true, thickness_mm: 5, medium: {index: 1.5}}\n  - {thickness_mm: 7, medium: {index: 1.25}}\n  - {}\n",
