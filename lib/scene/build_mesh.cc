@@ -15,9 +15,39 @@ namespace {
 
 using numerics::Vec3;
 using prescription::PointCloud;
+using surface::Corners;
 using surface::Facet;
 using surface::Mesh;
 using surface::no_facet;
+
+// Where the whole cloud lies, holes not counted. Everything that steers a ray depends on it, and not on the facets at
+// hand: part of a cloud's facets give a ray the same bits as all of them.
+struct Extent {
+  Vec3<double> low, high;
+  Vec3<double> centre;  // medians, which a stray point far away does not move
+  double reach = 0;     // the largest distance of a coordinate from the centre's
+};
+Extent extent_of(const PointCloud& cloud) {
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  Extent box{{inf, inf, inf}, {-inf, -inf, -inf}, {}};
+  for (const Vec3<double>& p : cloud.points) {
+    if (std::isnan(p.z)) continue;
+    box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
+    box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
+  }
+  const std::vector<Vec3<double>> some = sample_of(cloud.points);
+  std::vector<double> values(some.size());
+  const auto median = [&](auto&& coordinate) {
+    std::transform(some.begin(), some.end(), values.begin(), coordinate);
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+  };
+  box.centre = {median([](const auto& p) { return p.x; }), median([](const auto& p) { return p.y; }), median([](const auto& p) { return p.z; })};
+  const Vec3<double> up = box.high - box.centre, down = box.centre - box.low;
+  box.reach = std::max({up.x, up.y, up.z, down.x, down.y, down.z});
+  return box;
+}
 
 // Bits of two 16-bit numbers, interleaved: the place on Morton's curve.
 std::uint64_t interleaved(std::uint32_t x, std::uint32_t y) {
@@ -30,40 +60,30 @@ std::uint64_t interleaved(std::uint32_t x, std::uint32_t y) {
   return spread(x) | (spread(y) << 1);
 }
 
-struct Box {
-  Vec3<double> low, high;
-};
-
-template <class Points>
-Box bounding_box(const Points& corners_of) {
-  constexpr double inf = std::numeric_limits<double>::infinity();
-  Box box{{inf, inf, inf}, {-inf, -inf, -inf}};
-  corners_of([&](const Vec3<double>& p) {
-    box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
-    box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
-  });
-  return box;
-}
-
-// The facets along Morton's curve: what is near on the surface is near in memory.
-void sort_along_curve(const PointCloud& cloud, std::vector<RawFacet>& facets) {
-  const Box box = bounding_box([&](auto&& take) {
-    for (const RawFacet& facet : facets) take(cloud.points[facet.corner[0]]);
-  });
-  const auto place = [](double v, double low, double high) {
-    return high > low ? static_cast<std::uint32_t>((v - low) / (high - low) * 65535) : 0u;
+// The facets along Morton's curve: what is near on the surface is near in memory. The order of any two depends on nothing
+// but their corners and the cloud's extent.
+void sort_along_curve(const PointCloud& cloud, const Extent& box, std::vector<RawFacet>& facets) {
+  const auto place = [](double sum, double low, double high) {  // of three coordinates
+    return high > low ? static_cast<std::uint32_t>(std::clamp((sum / 3 - low) / (high - low), 0.0, 1.0) * 65535) : 0u;
   };
   std::vector<std::uint64_t> keys(facets.size());
   for (std::size_t f = 0; f < facets.size(); ++f) {
-    const auto& p = cloud.points[facets[f].corner[0]];
-    keys[f] = interleaved(place(p.x, box.low.x, box.high.x), place(p.y, box.low.y, box.high.y)) << 32 | f;
+    const auto& [i, j, k] = facets[f].corner;
+    const auto &a = cloud.points[i], &b = cloud.points[j], &c = cloud.points[k];
+    keys[f] = interleaved(place(a.x + b.x + c.x, box.low.x, box.high.x), place(a.y + b.y + c.y, box.low.y, box.high.y)) << 32 | f;
   }
   std::sort(keys.begin(), keys.end());
+  const auto facet_of = [&](std::uint64_t key) -> const RawFacet& { return facets[static_cast<std::uint32_t>(key)]; };
+  for (auto run = keys.begin(); run != keys.end();) {
+    const auto end = std::find_if(run, keys.end(), [&](std::uint64_t key) { return key >> 32 != *run >> 32; });
+    if (end - run > 1) std::sort(run, end, [&](std::uint64_t a, std::uint64_t b) { return facet_of(a).corner < facet_of(b).corner; });
+    run = end;
+  }
   std::vector<std::uint32_t> new_index(facets.size());
   for (std::size_t k = 0; k < keys.size(); ++k) new_index[static_cast<std::uint32_t>(keys[k])] = static_cast<std::uint32_t>(k);
   std::vector<RawFacet> sorted(facets.size());
-  for (std::size_t f = 0; f < facets.size(); ++f) {
-    RawFacet& facet = sorted[new_index[f]] = facets[f];
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    RawFacet& facet = sorted[k] = facet_of(keys[k]);
     for (std::uint32_t& next : facet.neighbour) next = next == no_facet ? no_facet : new_index[next];
   }
   facets = std::move(sorted);
@@ -72,23 +92,52 @@ void sort_along_curve(const PointCloud& cloud, std::vector<RawFacet>& facets) {
 // Vertices in the order in which the facets first use them.
 void take_vertices(const PointCloud& cloud, const std::vector<RawFacet>& facets, MeshStorage& mesh) {
   std::vector<std::uint32_t> vertex_of(cloud.points.size(), no_facet);
-  mesh.facets.reserve(facets.size());
+  mesh.corners.reserve(facets.size());
   mesh.vertices.reserve(std::min(cloud.points.size(), facets.size() + 2));
+  mesh.points.reserve(mesh.vertices.capacity());
   for (const RawFacet& raw : facets) {
-    Facet& facet = mesh.facets.emplace_back();
+    Corners& corners = mesh.corners.emplace_back();
     for (std::size_t i = 0; i < 3; ++i) {
       std::uint32_t& vertex = vertex_of[raw.corner[i]];
       if (vertex == no_facet) {
         vertex = static_cast<std::uint32_t>(mesh.vertices.size());
         mesh.vertices.push_back(cloud.points[raw.corner[i]]);
+        mesh.points.push_back(raw.corner[i]);
       }
-      facet.corner[i] = vertex;
-      facet.neighbour[i] = raw.neighbour[i];
+      corners[i] = vertex;
     }
-    const auto &p0 = cloud.points[raw.corner[0]], &p1 = cloud.points[raw.corner[1]], &p2 = cloud.points[raw.corner[2]];
-    const Vec3<double> normal = cross(p1 - p0, p2 - p0);
-    facet.slope_x = -normal.x / normal.z;
-    facet.slope_y = -normal.y / normal.z;
+  }
+}
+
+// surface/mesh.h, Facet. In long double, so that the plane of a thin facet still passes through its corners.
+Facet facet_between(const Vec3<double>& v0, const Vec3<double>& v1, const Vec3<double>& v2, const Mesh& mesh) {
+  using Long = long double;
+  const auto exact = [](const Vec3<double>& v) { return numerics::vec3_cast<Long>(v); };
+  const Vec3<Long> corner = exact(v0) - exact(mesh.centre), to_1 = exact(v1) - exact(v0), to_2 = exact(v2) - exact(v0);
+  const Vec3<Long> normal = cross(to_1, to_2);
+  const Long per_z = 1 / normal.z, slope_x = -normal.x * per_z, slope_y = -normal.y * per_z;
+  Facet facet{};
+  facet.slope_x = static_cast<double>(slope_x);
+  facet.slope_y = static_cast<double>(slope_y);
+  facet.x = static_cast<float>(corner.x);
+  facet.y = static_cast<float>(corner.y);
+  facet.z = static_cast<double>(corner.z + (slope_x * (Long{facet.x} - corner.x) + slope_y * (Long{facet.y} - corner.y)));
+  facet.u_x = static_cast<float>(to_2.y * per_z);
+  facet.u_y = static_cast<float>(-to_2.x * per_z);
+  facet.v_x = static_cast<float>(-to_1.y * per_z);
+  facet.v_y = static_cast<float>(to_1.x * per_z);
+  facet.guard = static_cast<float>(0x1p-22 * mesh.extent) *
+                (std::abs(facet.u_x) + std::abs(facet.u_y) + std::abs(facet.v_x) + std::abs(facet.v_y));
+  return facet;
+}
+
+void make_facets(const std::vector<RawFacet>& raw, MeshStorage& storage) {
+  storage.facets.reserve(raw.size());
+  for (std::size_t f = 0; f < raw.size(); ++f) {
+    const Corners& corners = storage.corners[f];
+    Facet& facet = storage.facets.emplace_back(facet_between(storage.vertices[corners[0]], storage.vertices[corners[1]],
+                                                             storage.vertices[corners[2]], storage.mesh));
+    std::copy(raw[f].neighbour.begin(), raw[f].neighbour.end(), facet.neighbour);
   }
 }
 
@@ -110,101 +159,29 @@ void refuse_cliffs(const PointCloud& cloud, const std::vector<RawFacet>& facets,
   }
 }
 
-// The grid: about a cell a facet, its cells as long and wide as the facets are on average, so that scan lines far apart
-// do not fill the lists. Where thin facets across the grid would, it is made coarser.
-void build_grid(MeshStorage& storage) {
-  Mesh& mesh = storage.mesh;
-  const auto facet_count = static_cast<double>(storage.facets.size());
-  const auto box_of = [&](const Facet& facet) {
-    return bounding_box([&](auto&& take) {
-      for (const std::uint32_t v : facet.corner) take(storage.vertices[v]);
-    });
-  };
-  const Vec3<double> size = mesh.high - mesh.low;
-  double mean_x = 0, mean_y = 0;  // of the facets' rectangles, in sizes of the whole
-  for (const Facet& facet : storage.facets) {
-    const Box box = box_of(facet);
-    mean_x += (box.high.x - box.low.x) / size.x / facet_count;
-    mean_y += (box.high.y - box.low.y) / size.y / facet_count;
-  }
-  const auto slots = [&](double ideal) { return static_cast<std::uint32_t>(std::clamp(ideal, 1.0, facet_count)); };
-  mesh.columns = slots(std::sqrt(facet_count * mean_y / mean_x));
-  mesh.rows = slots(facet_count / mesh.columns);
-
-  struct Cells {
-    std::int64_t first_column, last_column, first_row, last_row;
-  };
-  const auto cells_of = [&](const Facet& facet) -> Cells {
-    const Box box = box_of(facet);
-    return {mesh.column(box.low.x), mesh.column(box.high.x), mesh.row(box.low.y), mesh.row(box.high.y)};
-  };
-  const std::uint64_t most_entries = 16 * std::uint64_t{storage.facets.size()} + 1000;
-  for (;; mesh.columns = (mesh.columns + 1) / 2, mesh.rows = (mesh.rows + 1) / 2) {
-    mesh.columns_per_mm = mesh.columns / size.x;
-    mesh.rows_per_mm = mesh.rows / size.y;
-    std::uint64_t entries = 0;
-    for (const Facet& facet : storage.facets) {
-      const Cells cells = cells_of(facet);
-      entries += static_cast<std::uint64_t>((cells.last_column - cells.first_column + 1) * (cells.last_row - cells.first_row + 1));
-    }
-    if (entries <= most_entries || std::max(mesh.columns, mesh.rows) == 1) break;
-  }
-
-  const auto for_each_entry = [&](auto&& take) {
-    for (std::uint32_t f = 0; f < storage.facets.size(); ++f) {
-      const Cells cells = cells_of(storage.facets[f]);
-      for (std::int64_t row = cells.first_row; row <= cells.last_row; ++row) {
-        for (std::int64_t column = cells.first_column; column <= cells.last_column; ++column) take(f, column, row);
-      }
-    }
-  };
-  // Counts, then ends, then (filling from the end) beginnings.
-  storage.cell_begin.assign(std::size_t{mesh.columns} * mesh.rows + 1, 0);
-  for_each_entry([&](std::uint32_t, std::int64_t column, std::int64_t row) { ++storage.cell_begin[mesh.cell(column, row)]; });
-  for (std::size_t cell = 1; cell < storage.cell_begin.size(); ++cell) storage.cell_begin[cell] += storage.cell_begin[cell - 1];
-  storage.cell_facets.resize(storage.cell_begin.back());
-  for_each_entry([&](std::uint32_t f, std::int64_t column, std::int64_t row) {
-    storage.cell_facets[--storage.cell_begin[mesh.cell(column, row)]] = f;
-  });
-  // The facet that covers the centre comes first.
-  for_each_entry([&](std::uint32_t f, std::int64_t column, std::int64_t row) {
-    const double x = mesh.low.x + (static_cast<double>(column) + 0.5) / mesh.columns_per_mm;
-    const double y = mesh.low.y + (static_cast<double>(row) + 0.5) / mesh.rows_per_mm;
-    const auto is_left_of = [&](std::size_t i) {
-      const auto &a = storage.vertices[storage.facets[f].corner[i]], &b = storage.vertices[storage.facets[f].corner[(i + 1) % 3]];
-      return (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x) >= 0;
-    };
-    if (!is_left_of(0) || !is_left_of(1) || !is_left_of(2)) return;
-    const auto list = storage.cell_facets.begin() + storage.cell_begin[mesh.cell(column, row)];
-    std::iter_swap(list, std::find(list, storage.cell_facets.end(), f));
-  });
-}
-
 }  // namespace
 
 std::shared_ptr<const MeshStorage> build_mesh(const PointCloud& cloud, std::vector<RawFacet> facets,
                                               prescription::Findings& findings) {
   auto storage = std::make_shared<MeshStorage>();
-  sort_along_curve(cloud, facets);
+  Mesh& mesh = storage->mesh;
+  const Extent box = extent_of(cloud);
+  mesh.centre = box.centre;
+  mesh.extent = box.reach;
+  sort_along_curve(cloud, box, facets);
   take_vertices(cloud, facets, *storage);
+  make_facets(facets, *storage);
   refuse_cliffs(cloud, facets, *storage, findings);
   if (findings.has_errors()) return nullptr;
   facets = {};
 
-  Mesh& mesh = storage->mesh;
-  const Box box = bounding_box([&](auto&& take) {
-    for (const auto& vertex : storage->vertices) take(vertex);
-  });
-  mesh.low = box.low;
-  mesh.high = box.high;
-  mesh.base = fit_base_sphere(storage->vertices, 0.5 * (box.low + box.high));
-  build_grid(*storage);
+  mesh.base = fit_base_sphere(cloud.points, mesh.centre);
   mesh.vertices = storage->vertices.data();
+  mesh.corners = storage->corners.data();
   mesh.facets = storage->facets.data();
   mesh.vertex_count = static_cast<std::uint32_t>(storage->vertices.size());
   mesh.facet_count = static_cast<std::uint32_t>(storage->facets.size());
-  mesh.cell_begin = storage->cell_begin.data();
-  mesh.cell_facets = storage->cell_facets.data();
+  index_mesh(*storage);
   return storage;
 }
 

@@ -73,20 +73,31 @@ std::optional<double> second_derivative(const std::vector<Vec3<double>>& points,
 
 }  // namespace
 
-surface::BaseSphere fit_base_sphere(const std::vector<Vec3<double>>& points, const Vec3<double>& centre) {
+std::vector<Vec3<double>> sample_of(const std::vector<Vec3<double>>& points) {
+  constexpr std::size_t enough = 1 << 16;
+  std::vector<Vec3<double>> some;
+  for (std::size_t stride = 1 + points.size() / enough; some.empty() && stride > 0; stride /= 2)  // a sample may be all holes
+    for (std::size_t i = 0; i < points.size(); i += stride)
+      if (!std::isnan(points[i].z)) some.push_back(points[i]);
+  return some;
+}
+
+surface::BaseSphere fit_base_sphere(const std::vector<Vec3<double>>& all_points, const Vec3<double>& centre) {
+  std::vector<Vec3<double>> points = sample_of(all_points);
+  for (auto& p : points) p = p - centre;
   double scale = 0;
-  for (const auto& p : points) scale = std::max({scale, std::abs(p.x - centre.x), std::abs(p.y - centre.y), std::abs(p.z - centre.z)});
+  for (const auto& p : points) scale = std::max({scale, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
   double mean = 0;
   LeastSquares sphere(4), plane(3);
   for (const auto& p : points) {
-    const Vec3<double> q = (1 / scale) * (p - centre);
-    mean += (p.z - centre.z) / static_cast<double>(points.size());
+    const Vec3<double> q = (1 / scale) * p;
+    mean += p.z / static_cast<double>(points.size());
     sphere.next_row() << dot(q, q) / 2, q.x, q.y, 1, q.z;
     plane.next_row() << q.x, q.y, 1, q.z;
   }
-  if (const auto s = sphere.solve()) return {centre, (*s)(0) / scale, (*s)(1), (*s)(2), (*s)(3) * scale};
-  if (const auto s = plane.solve()) return {centre, 0, (*s)(0), (*s)(1), (*s)(2) * scale};
-  return {centre, 0, 0, 0, mean};
+  if (const auto s = sphere.solve()) return {(*s)(0) / scale, (*s)(1), (*s)(2), (*s)(3) * scale};
+  if (const auto s = plane.solve()) return {0, (*s)(0), (*s)(1), (*s)(2) * scale};
+  return {0, 0, 0, mean};
 }
 
 double vertex_curvature(const prescription::PointCloud& cloud, double beam_radius) {

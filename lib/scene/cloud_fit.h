@@ -9,8 +9,11 @@
 
 namespace sagitta::scene {
 
+// Some of the points, evenly through the list: up to 65536, enough to know where a cloud lies. No holes.
+std::vector<numerics::Vec3<double>> sample_of(const std::vector<numerics::Vec3<double>>& points);
+
 // The sphere (or plane) of surface/mesh.h (1), by linear least squares of its left side with the coefficient of q_z
-// fixed: exact for points on a sphere or a plane. `centre` is the given one.
+// fixed: exact for points on a sphere or a plane. Relative to the centre, by the points of sample_of.
 surface::BaseSphere fit_base_sphere(const std::vector<numerics::Vec3<double>>& points, const numerics::Vec3<double>& centre);
 
 // The y-z second derivative at the local origin of a quartic in (x, y), 15 terms, fitted to the points within half the

@@ -90,14 +90,14 @@ std::vector<CloughTocherPatch> fit_patches(const Mesh& mesh) {
   std::vector<CloughTocherPatch> patches;
   patches.reserve(mesh.facet_count);
   for (std::uint32_t f = 0; f < mesh.facet_count; ++f) {
-    const Facet& facet = mesh.facets[f];
+    const surface::Corners& corner = mesh.corners[f];
     CloughTocherPatch::Corner corners[3];
     CloughTocherPatch::Slope slopes[3];
     for (int i = 0; i < 3; ++i) {
-      const std::uint32_t v = facet.corner[i];
+      const std::uint32_t v = corner[i];
       corners[i] = {mesh.vertices[v], fits[v][0], fits[v][1]};
       // both facets of the edge take its ends in the same order, so their slopes have the same bits
-      const auto [a, b] = std::minmax(facet.corner[(i + 1) % 3], facet.corner[(i + 2) % 3]);
+      const auto [a, b] = std::minmax(corner[(i + 1) % 3], corner[(i + 2) % 3]);
       const double X = (mesh.vertices[b].x - mesh.vertices[a].x) / 2, Y = (mesh.vertices[b].y - mesh.vertices[a].y) / 2;
       const auto from_a = gradient(fits[a], X, Y), from_b = gradient(fits[b], -X, -Y);
       slopes[i] = {(from_a.x + from_b.x) / 2, (from_a.y + from_b.y) / 2};

@@ -27,7 +27,7 @@ double mean_edge_length(const surface::Mesh& mesh) {
   double sum = 0, count = 0;
   for (std::uint32_t f = 0; f < mesh.facet_count; ++f)
     for (int i = 0; i < 3; ++i) {
-      const auto &a = mesh.vertices[mesh.facets[f].corner[(i + 1) % 3]], &b = mesh.vertices[mesh.facets[f].corner[(i + 2) % 3]];
+      const auto &a = mesh.vertices[mesh.corners[f][(i + 1) % 3]], &b = mesh.vertices[mesh.corners[f][(i + 2) % 3]];
       const double share = mesh.facets[f].neighbour[i] == surface::no_facet ? 1 : 0.5;  // an inner edge comes twice
       sum += share * std::hypot(b.x - a.x, b.y - a.y);
       count += share;
@@ -46,12 +46,12 @@ RadialFit<function> fit_radial(const surface::Mesh& mesh, const RadialOptions& o
   Eigen::MatrixXd matrix;
   Eigen::VectorXd right;
   for (std::uint32_t f = 0; f < mesh.facet_count; ++f) {
-    const surface::Facet& facet = mesh.facets[f];
-    rings.start({facet.corner[0], facet.corner[1], facet.corner[2]});
+    const surface::Corners& corner = mesh.corners[f];
+    rings.start({corner[0], corner[1], corner[2]});
     for (int ring = 0; ring < options.rings; ++ring) rings.add_ring();
     const std::vector<std::uint32_t>& nodes = rings.vertices();
     const auto count = static_cast<Eigen::Index>(nodes.size());
-    const auto& v0 = mesh.vertices[facet.corner[0]];
+    const auto& v0 = mesh.vertices[corner[0]];
     double scale = 0;
     for (const std::uint32_t node : nodes) scale = std::max(scale, std::hypot(mesh.vertices[node].x - v0.x, mesh.vertices[node].y - v0.y));
     const double phi_size = size_of<function>(scale, fit.shape_squared);
@@ -74,7 +74,7 @@ RadialFit<function> fit_radial(const surface::Mesh& mesh, const RadialOptions& o
     Eigen::VectorXd solution = Eigen::VectorXd::Zero(count + 3);
     const bool solved = count > 3 && lu.isInvertible();
     if (solved) solution = lu.solve(right);
-    typename Patches::Patch patch{static_cast<std::uint32_t>(fit.nodes.size()), 0, v0.x, v0.y, v0.z, facet.slope_x, facet.slope_y};
+    typename Patches::Patch patch{static_cast<std::uint32_t>(fit.nodes.size()), 0, v0.x, v0.y, v0.z, mesh.facets[f].slope_x, mesh.facets[f].slope_y};
     if (solved && solution.allFinite()) {
       patch.node_count = static_cast<std::uint32_t>(count);
       patch.a = v0.z + solution(count);

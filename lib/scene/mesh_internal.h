@@ -42,6 +42,9 @@ Trimmed trim(const prescription::PointCloud& cloud, std::vector<RawFacet> facets
 std::shared_ptr<const MeshStorage> build_mesh(const prescription::PointCloud& cloud, std::vector<RawFacet> facets,
                                               prescription::Findings& findings);
 
+// The grid and the tree of boxes of a mesh whose vertices and facets are there.
+void index_mesh(MeshStorage& storage);
+
 // The place of a point in the cloud's file.
 prescription::Place place_of(const prescription::PointCloud& cloud, std::size_t point);
 

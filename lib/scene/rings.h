@@ -21,7 +21,7 @@ class Neighbours {
           // every edge once: by the facet of the lower number, or by its only one
           const std::uint32_t other = mesh.facets[f].neighbour[i];
           if (other != surface::no_facet && other < f) continue;
-          take(mesh.facets[f].corner[(i + 1) % 3], mesh.facets[f].corner[(i + 2) % 3]);
+          take(mesh.corners[f][(i + 1) % 3], mesh.corners[f][(i + 2) % 3]);
         }
     };
     for_each_edge([&](std::uint32_t a, std::uint32_t b) { ++begin_[a + 1], ++begin_[b + 1]; });

@@ -37,16 +37,45 @@ struct Patches {
   }
   template <class T>
   Crossing<T> meet(const Vec3<T>& p, const Vec3<T>& d) const {
-    const auto flat = facets.find(p, d);
+    return meet_from_facet(facets.find(p, d), d);
+  }
+
+  [[gnu::always_inline]] void meet_block(const BlockOfLines& lines, BlockOfCrossings& crossings) const {
+    FacetsOfBlock flat;
+    facets.meet_block(lines, crossings, flat);
+    constexpr int ahead = 8;  // rays, while whose patches are on their way from memory
+    const auto ask_for = [&](int i) {
+      if (i >= lines.count || flat.facet[i] == no_facet) return;
+      const char* const patch = reinterpret_cast<const char*>(patches + flat.facet[i]);
+      for (std::size_t line = 0; line < sizeof(CloughTocherPatch); line += 64) __builtin_prefetch(patch + line);
+    };
+    for (int i = 0; i < ahead; ++i) ask_for(i);
+    for (int i = 0; i < lines.count; ++i) {
+      ask_for(i + ahead);
+      if (flat.facet[i] == no_facet) continue;
+      const Facets::Hit<double> hit{flat.facet[i], crossings.path[i], {crossings.x[i], crossings.y[i], crossings.z[i]}};
+      const Crossing<double> crossing = meet_from_facet(hit, Vec3<double>{lines.l[i], lines.m[i], lines.n[i]});
+      crossings.path[i] = crossing.path;
+      crossings.x[i] = crossing.point.x;
+      crossings.y[i] = crossing.point.y;
+      crossings.z[i] = crossing.point.z;
+      crossings.slope_x[i] = -crossing.normal.x;
+      crossings.slope_y[i] = -crossing.normal.y;
+      crossings.status[i] = static_cast<std::int32_t>(crossing.status);
+    }
+  }
+
+ private:
+  template <class T>
+  Crossing<T> meet_from_facet(const Facets::Hit<T>& flat, const Vec3<T>& d) const {
     if (flat.facet == no_facet) return no_crossing<T>(Status::outside_data);
     Walker<T> walker{*this, flat.facet};
     const Crossing<T> crossing = meet_from(flat.path, flat.point, d.z > T(0), walker, d);
     if (crossing.status != Status::ok) return crossing;
-    walker.height(crossing.point.x, crossing.point.y);
+    walker.go_to(crossing.point.x, crossing.point.y);
     return walker.beyond_rim ? no_crossing<T>(Status::outside_data) : crossing;
   }
 
- private:
   // Goes from facet to facet with (x, y), and remembers where it is.
   template <class T>
   struct Walker {
@@ -54,26 +83,30 @@ struct Patches {
     std::uint32_t facet;
     bool beyond_rim = false;
 
-    Height<T> height(const T& x, const T& y) {
-      using std::abs;
+    CloughTocherPatch::Place<T> go_to(const T& x, const T& y) {
       // A place this far outside counts as inside: the same on both sides of an edge, and far above rounding.
       const T slack(-1e-12);
       constexpr int longest_walk = 1000;
       beyond_rim = false;
       for (int step = 0;; ++step) {
-        const CloughTocherPatch& patch = surface.patches[facet];
-        const auto place = patch.locate(x, y);
+        const auto place = surface.patches[facet].locate(x, y);
         const T* m = place.m;
         const int least = m[0] < m[1] ? (m[0] < m[2] ? 0 : 2) : (m[1] < m[2] ? 1 : 2);
+        if (!(m[least] < slack)) return place;
         const std::uint32_t next = surface.facets.mesh->facets[facet].neighbour[least];
-        if (m[least] < slack && next != no_facet && step < longest_walk) {
+        if (next != no_facet && step < longest_walk) {
           facet = next;
           continue;
         }
-        beyond_rim = m[least] < slack;
-        const auto sheet = patch.evaluate(place);
-        return {sheet.z, sheet.dz_dx, sheet.dz_dy, abs(sheet.z)};
+        beyond_rim = true;
+        return place;
       }
+    }
+    Height<T> height(const T& x, const T& y) {
+      using std::abs;
+      const auto place = go_to(x, y);
+      const auto sheet = surface.patches[facet].evaluate(place);
+      return {sheet.z, sheet.dz_dx, sheet.dz_dy, abs(sheet.z)};
     }
   };
 };

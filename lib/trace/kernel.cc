@@ -21,6 +21,52 @@ struct Setting {
   int surface_number;
 };
 
+// Rays from the frame before into the surface's own.
+template <bool centred>
+[[gnu::always_inline]] inline void to_local(const Setting& setting, Vec3<double>& start, Vec3<double>& d) {
+  if constexpr (centred) {
+    start.z += setting.local_from_previous.translation.z;
+  } else {
+    start = setting.local_from_previous * start;
+    d = setting.local_from_previous.rotation * d;
+  }
+}
+
+// A shape whose crossings with the block's rays are known already.
+struct Met {
+  const surface::BlockOfCrossings* crossings;
+
+  [[gnu::always_inline]] surface::Crossing<double> at(int i, const Vec3<double>& d) const {
+    const surface::BlockOfCrossings& at = *crossings;
+    const double a = at.slope_x[i], b = at.slope_y[i];
+    return {at.path[i], {at.x[i], at.y[i], at.z[i]}, {-a, -b, 1}, d.z - a * d.x - b * d.y, static_cast<Status>(at.status[i])};
+  }
+};
+
+template <class Shape>
+[[gnu::always_inline]] inline surface::Crossing<double> meet_one(const Shape& shape, const Vec3<double>& start, const Vec3<double>& d, int i) {
+  if constexpr (std::is_same_v<Shape, Met>)
+    return shape.at(i, d);
+  else
+    return shape.meet(start, d);
+}
+
+template <bool centred, class Shape>
+[[gnu::always_inline]] inline void meet_block(const Shape& shape, const Setting& setting, const RayColumns& rays,
+                                              const int ray_count, surface::BlockOfCrossings& crossings) {
+  surface::BlockOfLines lines;
+  lines.count = ray_count;
+#pragma GCC ivdep
+  for (int i = 0; i < ray_count; ++i) {
+    Vec3<double> start{rays.x[i], rays.y[i], rays.z[i]}, d{rays.l[i], rays.m[i], rays.n[i]};
+    to_local<centred>(setting, start, d);
+    lines.x[i] = start.x, lines.y[i] = start.y, lines.z[i] = start.z;
+    lines.l[i] = d.x, lines.m[i] = d.y, lines.n[i] = d.z;
+  }
+  for (int i = 0; i < ray_count; ++i) lines.travels[i] = rays.ended[i] == 0;
+  shape.meet_block(lines, crossings);
+}
+
 template <bool centred, Deflection deflection, class Shape>
 [[gnu::always_inline]] inline void advance_block(const Shape& shape, const Setting& setting, const RayColumns& rays,
                                                  const int ray_count) {
@@ -31,14 +77,9 @@ template <bool centred, Deflection deflection, class Shape>
     const bool travels = ended == 0;
     Vec3<double> start{rays.x[i], rays.y[i], rays.z[i]}, d{rays.l[i], rays.m[i], rays.n[i]};
     const Vec3<double> old_start = start, old_d = d;
-    if constexpr (centred) {
-      start.z += setting.local_from_previous.translation.z;
-    } else {
-      start = setting.local_from_previous * start;
-      d = setting.local_from_previous.rotation * d;
-    }
+    to_local<centred>(setting, start, d);
 
-    const surface::Crossing<double> crossing = shape.meet(start, d);
+    const surface::Crossing<double> crossing = meet_one(shape, start, d, i);
     const bool met = crossing.status == Status::ok;
     const Vec3<double> hit = crossing.point;
     const double r_squared = hit.x * hit.x + hit.y * hit.y;
@@ -73,6 +114,11 @@ template <bool centred, Deflection deflection, class Shape>
 void advance_for_any(const Shape shape, const Setting setting, const RayColumns rays, const int ray_count) {
   advance_block<centred, deflection>(shape, setting, rays, ray_count);
 }
+template <bool centred, class Shape>
+void meet_for_any(const Shape shape, const Setting setting, const RayColumns rays, const int ray_count,
+                  surface::BlockOfCrossings& crossings) {
+  meet_block<centred>(shape, setting, rays, ray_count, crossings);
+}
 #if defined(__x86_64__)
 template <bool centred, Deflection deflection, class Shape>
 [[gnu::target("arch=x86-64-v3")]] void advance_for_v3(const Shape shape, const Setting setting, const RayColumns rays,
@@ -84,11 +130,41 @@ template <bool centred, Deflection deflection, class Shape>
                                                       const int ray_count) {
   advance_block<centred, deflection>(shape, setting, rays, ray_count);
 }
+template <bool centred, class Shape>
+[[gnu::target("arch=x86-64-v3")]] void meet_for_v3(const Shape shape, const Setting setting, const RayColumns rays,
+                                                   const int ray_count, surface::BlockOfCrossings& crossings) {
+  meet_block<centred>(shape, setting, rays, ray_count, crossings);
+}
+template <bool centred, class Shape>
+[[gnu::target("arch=x86-64-v4")]] void meet_for_v4(const Shape shape, const Setting setting, const RayColumns rays,
+                                                   const int ray_count, surface::BlockOfCrossings& crossings) {
+  meet_block<centred>(shape, setting, rays, ray_count, crossings);
+}
 #endif
+
+// Shapes that meet a block at once.
+template <class Shape>
+concept MeetsBlocks = requires(const Shape& shape, surface::BlockOfLines& lines, surface::BlockOfCrossings& crossings) {
+  shape.meet_block(lines, crossings);
+};
 
 // Shapes with a closed form become vectors; an iteration or a search runs ray by ray, where wider registers do not help.
 template <class Shape>
-inline constexpr bool has_closed_form = std::is_same_v<Shape, surface::Plane> || std::is_same_v<Shape, surface::Conic>;
+inline constexpr bool has_closed_form =
+    std::is_same_v<Shape, surface::Plane> || std::is_same_v<Shape, surface::Conic> || std::is_same_v<Shape, Met>;
+
+template <bool centred, class Shape>
+void meet_with_chosen_instructions(const Shape& shape, const Setting& setting, const RayColumns& rays, int ray_count,
+                                   surface::BlockOfCrossings& crossings) {
+#if defined(__x86_64__)
+  switch (instruction_set()) {
+    case InstructionSet::x86_64_v4: return meet_for_v4<centred>(shape, setting, rays, ray_count, crossings);
+    case InstructionSet::x86_64_v3: return meet_for_v3<centred>(shape, setting, rays, ray_count, crossings);
+    case InstructionSet::any: break;
+  }
+#endif
+  meet_for_any<centred>(shape, setting, rays, ray_count, crossings);
+}
 
 template <bool centred, Deflection deflection, class Shape>
 void choose_instructions(const Shape& shape, const Setting& setting, const RayColumns& rays, int ray_count) {
@@ -107,7 +183,11 @@ void choose_instructions(const Shape& shape, const Setting& setting, const RayCo
 template <bool centred, class Shape>
 void choose_deflection(Deflection deflection, const Shape& shape, const Setting& setting, const RayColumns& rays,
                        int ray_count) {
-  switch (deflection) {
+  if constexpr (MeetsBlocks<Shape>) {
+    surface::BlockOfCrossings crossings;
+    meet_with_chosen_instructions<centred>(shape, setting, rays, ray_count, crossings);
+    return choose_deflection<centred>(deflection, Met{&crossings}, setting, rays, ray_count);
+  } else switch (deflection) {
     case Deflection::none: return choose_instructions<centred, Deflection::none>(shape, setting, rays, ray_count);
     case Deflection::refract: return choose_instructions<centred, Deflection::refract>(shape, setting, rays, ray_count);
     case Deflection::reflect: return choose_instructions<centred, Deflection::reflect>(shape, setting, rays, ray_count);

@@ -13,7 +13,7 @@ namespace sagitta::trace {
 namespace {
 
 // Eight columns of 256 rays are 15 KB: they stay in the first-level cache from the first surface to the last.
-constexpr std::size_t block_size = 256;
+constexpr std::size_t block_size = surface::block_capacity;
 
 void trace_block(const scene::Scene& scene, const scene::Wavelength& wavelength, RayBatch& rays, std::size_t from) {
   const int ray_count = static_cast<int>(std::min(block_size, rays.size() - from));

@@ -70,8 +70,8 @@ TEST(BaseSphere, IsExactForASphereAndAPlane) {
     const V d = numerics::normalized(V{u(-1, 1), u(-1, 1), i % 2 ? 2.0 : -2.0}), p{u(-2, 2), u(-2, 2), u(-5, 5)};
     const auto right = exact.meet(p, d);
     ASSERT_EQ(right.status, surface::Status::ok);
-    EXPECT_NEAR(fit.path(p, d), right.path, 1e-12);
-    EXPECT_NEAR(flat.path(p, d), (0.1 * p.x + 0.5 * p.y - 2 - p.z) / (d.z - 0.1 * d.x - 0.5 * d.y), 1e-12);
+    EXPECT_NEAR(fit.path(p - V{0.5, 0.2, -0.3}, d), right.path, 1e-12);
+    EXPECT_NEAR(flat.path(p - V{0, 0, -2}, d), (0.1 * p.x + 0.5 * p.y - 2 - p.z) / (d.z - 0.1 * d.x - 0.5 * d.y), 1e-12);
   }
 }
 

@@ -79,8 +79,8 @@ TEST(Triangulate, LeavesOutFacetsAroundAHoleAndNoMore) {
   grid.points[60].z = nan;  // the middle
   const auto holed = triangulate(grid).mesh;
   std::size_t around = 0;
-  for (const auto& facet : whole->facets) {
-    around += std::any_of(facet.corner, facet.corner + 3, [&](std::uint32_t v) { return whole->vertices[v] == V{0, 0, 0}; });
+  for (const auto& corners : whole->corners) {
+    around += std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return whole->vertices[v] == V{0, 0, 0}; });
   }
   EXPECT_EQ(holed->facets.size(), 200 - around);
   const Facets facets{&holed->mesh};
@@ -141,8 +141,8 @@ TEST(Triangulate, DoesNotPeelTheRimsOfHolesInside) {
   points.push_back({0, 0, nan});
   const auto holed = triangulate(cloud_of_points(points)).mesh;
   const auto is_near = [](const MeshStorage& mesh) {
-    return std::count_if(mesh.facets.begin(), mesh.facets.end(), [&](const auto& facet) {
-      return std::all_of(facet.corner, facet.corner + 3, [&](auto v) { return std::hypot(mesh.vertices[v].x, mesh.vertices[v].y) < 5; });
+    return std::count_if(mesh.corners.begin(), mesh.corners.end(), [&](const auto& corners) {
+      return std::all_of(corners.begin(), corners.end(), [&](auto v) { return std::hypot(mesh.vertices[v].x, mesh.vertices[v].y) < 5; });
     });
   };
   EXPECT_GT(is_near(*plain), is_near(*holed));
@@ -158,36 +158,44 @@ TEST(Triangulate, GivesTheSameMeshForTheSamePoints) {
     ASSERT_EQ(one->facets.size(), other->facets.size());
     for (std::size_t f = 0; f < one->facets.size(); ++f) {
       const auto &a = one->facets[f], &b = other->facets[f];
-      ASSERT_TRUE(std::equal(a.corner, a.corner + 3, b.corner) && std::equal(a.neighbour, a.neighbour + 3, b.neighbour) &&
-                  a.slope_x == b.slope_x && a.slope_y == b.slope_y);
+      ASSERT_TRUE(std::equal(a.neighbour, a.neighbour + 3, b.neighbour) && a.slope_x == b.slope_x && a.slope_y == b.slope_y);
     }
-    EXPECT_EQ(one->cell_facets, other->cell_facets);
+    EXPECT_EQ(one->corners, other->corners);
+    EXPECT_EQ(one->grid, other->grid);
   }
 }
 
-// What rays rely on: orientation, neighbours that are each other's, a rectangle in every cell it meets.
+// What rays rely on: orientation, neighbours that are each other's, boxes that hold what is below them.
 void expect_sound(const MeshStorage& storage) {
   const auto& mesh = storage.mesh;
   ASSERT_EQ(mesh.facet_count, storage.facets.size());
   for (std::uint32_t f = 0; f < mesh.facet_count; ++f) {
     const auto& facet = mesh.facets[f];
     for (int i = 0; i < 3; ++i) {
-      ASSERT_LT(facet.corner[i], mesh.vertex_count);
+      ASSERT_LT(mesh.corners[f][i], mesh.vertex_count);
       if (facet.neighbour[i] == surface::no_facet) continue;
       ASSERT_LT(facet.neighbour[i], mesh.facet_count);
       const auto& next = mesh.facets[facet.neighbour[i]];
       const auto back = std::find(next.neighbour, next.neighbour + 3, f) - next.neighbour;
       ASSERT_LT(back, 3);
-      ASSERT_EQ(facet.corner[(i + 1) % 3], next.corner[(back + 2) % 3]);
-      ASSERT_EQ(facet.corner[(i + 2) % 3], next.corner[(back + 1) % 3]);
+      const auto &here = mesh.corners[f], &there = mesh.corners[facet.neighbour[i]];
+      ASSERT_EQ(here[(i + 1) % 3], there[(back + 2) % 3]);
+      ASSERT_EQ(here[(i + 2) % 3], there[(back + 1) % 3]);
     }
     ASSERT_TRUE(std::isfinite(facet.slope_x) && std::isfinite(facet.slope_y));
-    for (const std::uint32_t v : facet.corner) {
-      const auto column = mesh.column(mesh.vertices[v].x), row = mesh.row(mesh.vertices[v].y);
-      ASSERT_TRUE(column >= 0 && column < mesh.columns && row >= 0 && row < mesh.rows);
-      const auto cell = mesh.cell(column, row);
-      const auto* end = mesh.cell_facets + mesh.cell_begin[cell + 1];
-      ASSERT_NE(std::find(mesh.cell_facets + mesh.cell_begin[cell], end, f), end);
+    for (const std::uint32_t v : mesh.corners[f]) {
+      const V corner = mesh.vertices[v] - mesh.centre;
+      ASSERT_GE(mesh.grid.cell(corner.x, corner.y), 0);
+      std::uint32_t begin = 0, size = (mesh.facet_count + surface::Mesh::leaf_size - 1) / surface::Mesh::leaf_size;
+      for (std::uint32_t box = f / surface::Mesh::leaf_size;; box /= surface::Mesh::branching) {
+        const surface::Box& around = mesh.boxes[begin + box];
+        ASSERT_TRUE(corner.x > around.low[0] && corner.y > around.low[1] && corner.z > around.low[2] && corner.x < around.high[0] &&
+                    corner.y < around.high[1] && corner.z < around.high[2]);
+        if (size == 1) break;
+        begin += size;
+        size = (size + surface::Mesh::branching - 1) / surface::Mesh::branching;
+      }
+      ASSERT_EQ(begin + 1, mesh.box_count);
     }
   }
 }
@@ -211,8 +219,7 @@ TEST(Triangulate, KeepsTheGridSmallForThinFacetsAcrossIt) {
     }
     const auto mesh = triangulate(cloud_of(places, sphere(30))).mesh;
     ASSERT_TRUE(mesh);
-    EXPECT_LE(mesh->cell_facets.size(), 16 * mesh->facets.size() + 1000);
-    EXPECT_LE(mesh->cell_begin.size(), 2 * mesh->facets.size());
+    EXPECT_LE(mesh->grid.size(), 4 * mesh->facets.size());
     EXPECT_TRUE((Facets{&mesh->mesh}.covers(0.3, 0.4)));
   }
 }
@@ -248,7 +255,7 @@ TEST(Triangulate, EndsInAnErrorOrInASoundMeshForAnySmallCloud) {
     const surface::Mesh& mesh = result.mesh->mesh;
     const Facets facets{&mesh};
     for (int k = 0; k < 4; ++k) {
-      const auto* corner = mesh.facets[pick(static_cast<int>(mesh.facet_count))].corner;
+      const auto& corner = mesh.corners[pick(static_cast<int>(mesh.facet_count))];
       const V middle = (1.0 / 3) * (mesh.vertices[corner[0]] + mesh.vertices[corner[1]] + mesh.vertices[corner[2]]);
       const V d = numerics::normalized(V{u(-1, 1), u(-1, 1), u(-0.5, 1.5)});
       const auto crossing = facets.meet(middle - 5 * scale * d, d);

@@ -63,7 +63,7 @@ TEST(Patches, join_without_jump_or_kink) {
       const std::uint32_t g = mesh.facets[f].neighbour[i];
       if (g == no_facet || g < f) continue;
       ++edges;
-      const auto &a = mesh.vertices[mesh.facets[f].corner[(i + 1) % 3]], &b = mesh.vertices[mesh.facets[f].corner[(i + 2) % 3]];
+      const auto &a = mesh.vertices[mesh.corners[f][(i + 1) % 3]], &b = mesh.vertices[mesh.corners[f][(i + 2) % 3]];
       for (const double s : {0.13, 0.5, 0.81}) {
         const double x = a.x + s * (b.x - a.x), y = a.y + s * (b.y - a.y);
         const auto &p = surface.patches[f], &q = surface.patches[g];
