@@ -37,9 +37,33 @@ struct CloughTocherPatch {
   };
   template <class T>
   Place<T> locate(const T& at_x, const T& at_y) const {
-    const T dx = at_x - T(x), dy = at_y - T(y), third = T(1) / T(3);
-    const T m1 = third + T(m1_x) * dx + T(m1_y) * dy, m2 = third + T(m2_x) * dx + T(m2_y) * dy;
+    return locate(at_x, at_y, T(x), T(y), T(m1_x), T(m1_y), T(m2_x), T(m2_y));
+  }
+  template <class T>
+  [[gnu::always_inline]] static Place<T> locate(const T& at_x, const T& at_y, const T& x, const T& y, const T& m1_x, const T& m1_y,
+                                                const T& m2_x, const T& m2_y) {
+    const T dx = at_x - x, dy = at_y - y, third = T(1) / T(3);
+    const T m1 = third + m1_x * dx + m1_y * dy, m2 = third + m2_x * dx + m2_y * dy;
     return {{T(1) - m1 - m2, m1, m2}};
+  }
+
+  // The coefficients (1) of the third on edge k.
+  template <class T>
+  struct Third {
+    T b300, b030, b003, b210, b120, b201, b021, b111, b102, b012;
+  };
+  static constexpr int after(int k) { return k == 2 ? 0 : k + 1; }
+  static constexpr int before(int k) { return k == 0 ? 2 : k - 1; }
+  // Which third holds a place: the one on the edge whose opposite corner weighs least.
+  template <class T>
+  static int third_at(const Place<T>& place) {
+    const T* m = place.m;
+    return m[0] < m[1] ? (m[0] < m[2] ? 0 : 2) : (m[1] < m[2] ? 1 : 2);
+  }
+  template <class T>
+  Third<T> third(int k) const {
+    const int i = after(k), j = before(k);
+    return {T(corner[i]), T(corner[j]), T(centre), T(edge[k][0]), T(edge[k][1]), T(spoke[i]), T(spoke[j]), T(middle[k]), T(inner[i]), T(inner[j])};
   }
 
   template <class T>
@@ -50,22 +74,31 @@ struct CloughTocherPatch {
   // the nearest third goes on.
   template <class T>
   Sheet<T> evaluate(const Place<T>& place) const {
-    const T* m = place.m;
-    const int k = m[0] < m[1] ? (m[0] < m[2] ? 0 : 2) : (m[1] < m[2] ? 1 : 2);
-    const int i = k == 2 ? 0 : k + 1, j = k == 0 ? 2 : k - 1;
-    const T li = m[i] - m[k], lj = m[j] - m[k], lc = T(3) * m[k];
-    const T b300 = corner[i], b030 = corner[j], b003 = centre, b210 = edge[k][0], b120 = edge[k][1], b201 = spoke[i],
-            b021 = spoke[j], b111 = middle[k], b102 = inner[i], b012 = inner[j];
-    const T q200 = li * b300 + lj * b210 + lc * b201, q020 = li * b120 + lj * b030 + lc * b021;
-    const T q002 = li * b102 + lj * b012 + lc * b003, q110 = li * b210 + lj * b120 + lc * b111;
-    const T q101 = li * b201 + lj * b111 + lc * b102, q011 = li * b111 + lj * b021 + lc * b012;
+    const int k = third_at(place);
+    return evaluate(third<T>(k), k, place, T(m1_x), T(m1_y), T(m2_x), T(m2_y));
+  }
+  // In select form, so that loops over it become vectors.
+  template <class T>
+  [[gnu::always_inline]] static Sheet<T> evaluate(const Third<T>& b, int k, const Place<T>& place, const T& m1_x, const T& m1_y, const T& m2_x,
+                                                  const T& m2_y) {
+    const auto turned = [k](const T& v0, const T& v1, const T& v2) {  // those of corners i, j and k
+      struct {
+        T i, j, k;
+      } of{k == 0 ? v1 : k == 1 ? v2 : v0, k == 0 ? v2 : k == 1 ? v0 : v1, k == 0 ? v0 : k == 1 ? v1 : v2};
+      return of;
+    };
+    const auto m = turned(place.m[0], place.m[1], place.m[2]);
+    const T li = m.i - m.k, lj = m.j - m.k, lc = T(3) * m.k;
+    const T q200 = li * b.b300 + lj * b.b210 + lc * b.b201, q020 = li * b.b120 + lj * b.b030 + lc * b.b021;
+    const T q002 = li * b.b102 + lj * b.b012 + lc * b.b003, q110 = li * b.b210 + lj * b.b120 + lc * b.b111;
+    const T q101 = li * b.b201 + lj * b.b111 + lc * b.b102, q011 = li * b.b111 + lj * b.b021 + lc * b.b012;
     const T li1 = li * q200 + lj * q110 + lc * q101;  // dS/dl = 3 times these
     const T lj1 = li * q110 + lj * q020 + lc * q011;
     const T lc1 = li * q101 + lj * q011 + lc * q002;
-    const T mx[3] = {-T(m1_x) - T(m2_x), T(m1_x), T(m2_x)}, my[3] = {-T(m1_y) - T(m2_y), T(m1_y), T(m2_y)};
+    const auto mx = turned(-m1_x - m2_x, m1_x, m2_x), my = turned(-m1_y - m2_y, m1_y, m2_y);
     const T to_k = T(3) * lc1 - li1 - lj1;  // derivative along m[k], which enters all three
-    return {li * li1 + lj * lj1 + lc * lc1, T(3) * (li1 * mx[i] + lj1 * mx[j] + to_k * mx[k]),
-            T(3) * (li1 * my[i] + lj1 * my[j] + to_k * my[k])};
+    return {li * li1 + lj * lj1 + lc * lc1, T(3) * (li1 * mx.i + lj1 * mx.j + to_k * mx.k),
+            T(3) * (li1 * my.i + lj1 * my.j + to_k * my.k)};
   }
 
   struct Corner {

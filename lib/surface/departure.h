@@ -8,11 +8,11 @@
 // points with opposite signs of f are known they bracket the root, and a step that would leave the bracket is replaced
 // by bisection.
 //
-// It ends when a step no longer moves the point: |step| <= 4 eps (|x| + |y| + |z|), or when |f| is at the rounding of its
-// own terms, eps (|z| + sum of the |terms| of S). A point is returned only if |f| is within 64 times that rounding, or
-// within what 8 roundings of the path make of it, and the line crosses the surface in the same sense as it crosses the
-// base conic (otherwise the iteration has slipped over a fold to another hit); else the status is not_converged. A line
-// that misses the base conic misses the surface.
+// It ends when |f| is at the rounding of its own terms, eps (|z| + sum of the |terms| of S), or when a step moves (x, y) by
+// less than rounding, |step| (|L| + |M|) <= 4 eps (|x| + |y| + |z|): S and its gradient are the same there, so that step is
+// the last one and needs no further look. (A ray along z ends so at once.) A point is returned only if the line crosses
+// the surface in the same sense as it crosses the base conic (otherwise the iteration has slipped over a fold to another
+// hit); else the status is not_converged. A line that misses the base conic misses the surface.
 //
 // Source: the safeguard is that of Dennis and Schnabel, Numerical Methods for Unconstrained Optimization (1983),
 // sections 2.5 and 6.3, for one variable.
@@ -54,10 +54,10 @@ Crossing<T> meet_from(const T& start_path, const Vec3<T>& origin, bool forward, 
     const T rounding = eps * (abs(origin.z + t * d.z) + h.magnitude);
     T step = -f / slope;
     const T scale = abs(origin.x) + abs(origin.y) + abs(origin.z) + abs(t);
-    if (abs(f) <= rounding || abs(step) <= T(4) * eps * scale) {
-      const bool same_sense = (slope > T(0)) == forward;
-      const T last = abs(f) <= rounding ? t : t + step;  // the last step is free
-      if (!(abs(f) <= T(64) * rounding + abs(slope) * T(8) * eps * scale) || !same_sense) break;
+    const bool is_last = abs(step) * (abs(d.x) + abs(d.y)) <= T(4) * eps * scale && abs(step) <= scale;
+    if (abs(f) <= rounding || is_last) {
+      if ((slope > T(0)) != forward) break;
+      const T last = abs(f) <= rounding ? t : t + step;
       return {start_path + last, origin + last * d, {-h.dz_dx, -h.dz_dy, T(1)}, slope, Status::ok};
     }
     if (f < T(0)) {

@@ -52,14 +52,15 @@ struct AimedLine {
 };
 
 // o is found from the point of the line nearest to the centre: a start far away costs its own rounding only. Where the line
-// passes the base sphere by, that point is the best guess.
+// passes the base sphere by, or meets it far from all facets, that point is the best guess.
 template <class T>
 [[gnu::always_inline]] inline AimedLine<T> aim(const Mesh& mesh, const Vec3<T>& start, const Vec3<T>& d) {
   const Vec3<T> from_centre = start - numerics::vec3_cast<T>(mesh.centre);
   const T to_middle = -dot(from_centre, d);
   const Vec3<T> middle = from_centre + to_middle * d;
   const T predicted = mesh.base.path(middle, d);
-  const T near = predicted - predicted == T(0) ? predicted : T(0);
+  using std::abs;
+  const T near = abs(predicted) <= T(4 * mesh.extent) ? predicted : T(0);  // NaN is not
   return {middle + near * d, d, to_middle + near};
 }
 

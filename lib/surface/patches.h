@@ -9,9 +9,8 @@
 // as outside_data: nothing is extrapolated.
 #pragma once
 
-#include "lib/surface/clough_tocher.h"
-#include "lib/surface/departure.h"
 #include "lib/surface/facets.h"
+#include "lib/surface/patch_block.h"
 
 namespace sagitta::surface {
 
@@ -43,16 +42,10 @@ struct Patches {
   [[gnu::always_inline]] void meet_block(const BlockOfLines& lines, BlockOfCrossings& crossings) const {
     FacetsOfBlock flat;
     facets.meet_block(lines, crossings, flat);
-    constexpr int ahead = 8;  // rays, while whose patches are on their way from memory
-    const auto ask_for = [&](int i) {
-      if (i >= lines.count || flat.facet[i] == no_facet) return;
-      const char* const patch = reinterpret_cast<const char*>(patches + flat.facet[i]);
-      for (std::size_t line = 0; line < sizeof(CloughTocherPatch); line += 64) __builtin_prefetch(patch + line);
-    };
-    for (int i = 0; i < ahead; ++i) ask_for(i);
+    bool settled[block_capacity];
+    meet_patches(patches, lines, flat, crossings, settled);
     for (int i = 0; i < lines.count; ++i) {
-      ask_for(i + ahead);
-      if (flat.facet[i] == no_facet) continue;
+      if (settled[i] || flat.facet[i] == no_facet) continue;
       const Facets::Hit<double> hit{flat.facet[i], crossings.path[i], {crossings.x[i], crossings.y[i], crossings.z[i]}};
       const Crossing<double> crossing = meet_from_facet(hit, Vec3<double>{lines.l[i], lines.m[i], lines.n[i]});
       crossings.path[i] = crossing.path;
@@ -84,15 +77,13 @@ struct Patches {
     bool beyond_rim = false;
 
     CloughTocherPatch::Place<T> go_to(const T& x, const T& y) {
-      // A place this far outside counts as inside: the same on both sides of an edge, and far above rounding.
-      const T slack(-1e-12);
       constexpr int longest_walk = 1000;
       beyond_rim = false;
       for (int step = 0;; ++step) {
         const auto place = surface.patches[facet].locate(x, y);
         const T* m = place.m;
         const int least = m[0] < m[1] ? (m[0] < m[2] ? 0 : 2) : (m[1] < m[2] ? 1 : 2);
-        if (!(m[least] < slack)) return place;
+        if (!(m[least] < -T(patch_slack))) return place;
         const std::uint32_t next = surface.facets.mesh->facets[facet].neighbour[least];
         if (next != no_facet && step < longest_walk) {
           facet = next;
