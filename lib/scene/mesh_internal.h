@@ -20,9 +20,10 @@ struct RawFacet {
   std::array<std::uint32_t, 3> corner, neighbour;
 };
 
-// What triangulates (triangulate.cc): the facets of the points `places` of the cloud, which are distinct in (x, y).
-// None if all lie on a straight line.
-std::vector<RawFacet> delaunay(const prescription::PointCloud& cloud, const std::vector<std::uint32_t>& places);
+// The facets of points that are distinct in (x, y), fast where they are in the order of a space-filling curve. None if
+// all lie on a straight line. They are a function of the set of points: of those on a common circle, too, no order of
+// insertion decides (exact predicates, ties broken by the order of (x, y)).
+std::vector<RawFacet> delaunay(const prescription::PointCloud& places);
 
 // Length of the edge in (x, y) opposite to corner i.
 double edge_length(const prescription::PointCloud& cloud, const RawFacet& facet, int i);
