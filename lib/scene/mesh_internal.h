@@ -2,28 +2,17 @@
 // The steps between the triangulation and the mesh, each in a file of its own.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "lib/scene/delaunay.h"
 #include "lib/scene/triangulate.h"
 
 namespace sagitta::scene {
 
 inline constexpr double steepest_slope = 1e9;
-
-// One facet of the whole triangulation: corners are indices of the cloud's points, anticlockwise; neighbour[i] is
-// across the edge opposite to corner[i], no_facet across the hull.
-struct RawFacet {
-  std::array<std::uint32_t, 3> corner, neighbour;
-};
-
-// The facets of points that are distinct in (x, y), fast where they are in the order of a space-filling curve. None if
-// all lie on a straight line. They are a function of the set of points: of those on a common circle, too, no order of
-// insertion decides (exact predicates, ties broken by the order of (x, y)).
-std::vector<RawFacet> delaunay(const prescription::PointCloud& places);
 
 // Length of the edge in (x, y) opposite to corner i.
 double edge_length(const prescription::PointCloud& cloud, const RawFacet& facet, int i);

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "lib/scene/mesh_internal.h"
@@ -32,54 +31,10 @@ bool coordinates_are_legal(const PointCloud& cloud, Findings& findings) {
   return !findings.has_errors();
 }
 
-struct Box {
-  double low_x, low_y, high_x, high_y;
-};
-Box box_of(const std::vector<numerics::Vec3<double>>& points) {
-  constexpr double inf = std::numeric_limits<double>::infinity();
-  Box box{inf, inf, -inf, -inf};
-  for (const auto& p : points) {
-    box.low_x = std::min(box.low_x, p.x), box.high_x = std::max(box.high_x, p.x);
-    box.low_y = std::min(box.low_y, p.y), box.high_y = std::max(box.high_y, p.y);
-  }
-  return box;
-}
-
-// The points along Morton's curve, on which what is near in the plane is near mostly; of one cell by x, y and number.
-std::vector<std::uint32_t> along_curve(const std::vector<numerics::Vec3<double>>& points, const Box& box) {
-  const auto spread = [](std::uint64_t v) {
-    v = (v | (v << 16)) & 0x0000FFFF0000FFFF;
-    v = (v | (v << 8)) & 0x00FF00FF00FF00FF;
-    v = (v | (v << 4)) & 0x0F0F0F0F0F0F0F0F;
-    v = (v | (v << 2)) & 0x3333333333333333;
-    return (v | (v << 1)) & 0x5555555555555555;
-  };
-  const auto cells_per_mm = [](double low, double high) { return high > low ? 0xFFFFFFFF / (high - low) : 0; };
-  const double columns_per_mm = cells_per_mm(box.low_x, box.high_x), rows_per_mm = cells_per_mm(box.low_y, box.high_y);
-  const auto cell = [](double position) { return static_cast<std::uint32_t>(std::min(position, 4294967295.0)); };
-  struct Key {
-    std::uint64_t place;
-    std::uint32_t point;
-  };
-  std::vector<Key> keys(points.size());
-  for (std::uint32_t i = 0; i < points.size(); ++i) {
-    const auto column = cell((points[i].x - box.low_x) * columns_per_mm), row = cell((points[i].y - box.low_y) * rows_per_mm);
-    keys[i] = {spread(column) | spread(row) << 1, i};
-  }
-  std::sort(keys.begin(), keys.end(), [&](const Key& a, const Key& b) {
-    if (a.place != b.place) return a.place < b.place;
-    const auto &p = points[a.point], &q = points[b.point];
-    return p.x != q.x ? p.x < q.x : p.y != q.y ? p.y < q.y : a.point < b.point;
-  });
-  std::vector<std::uint32_t> order(points.size());
-  std::transform(keys.begin(), keys.end(), order.begin(), [](const Key& key) { return key.point; });
-  return order;
-}
-
 // One point of every place, along the curve. Of points at one place the first with a height stays; another height is an error.
-PointCloud distinct_places(const PointCloud& cloud, const Box& box, Findings& findings) {
+PointCloud distinct_places(const PointCloud& cloud, Findings& findings) {
   const auto& points = cloud.points;
-  std::vector<std::uint32_t> order = along_curve(points, box);
+  std::vector<std::uint32_t> order = along_curve(points);
   std::size_t count = 0, repeated = 0;
   std::uint32_t first_repeated = 0;
   for (const std::uint32_t i : order) {
@@ -116,7 +71,7 @@ PointCloud distinct_places(const PointCloud& cloud, const Box& box, Findings& fi
   return places;
 }
 
-bool spread_is_legal(const PointCloud& places, const Box& box, Findings& findings) {
+bool spread_is_legal(const PointCloud& places, Findings& findings) {
   const prescription::Place file{places.file};
   const std::size_t count = places.points.size();
   if (count < 3) {
@@ -124,7 +79,9 @@ bool spread_is_legal(const PointCloud& places, const Box& box, Findings& finding
                    "one point a line: x, y, z in mm");
     return false;
   }
-  const double span = std::max(box.high_x - box.low_x, box.high_y - box.low_y);
+  const auto [left, right] = std::minmax_element(places.points.begin(), places.points.end(), [](auto& p, auto& q) { return p.x < q.x; });
+  const auto [lowest, highest] = std::minmax_element(places.points.begin(), places.points.end(), [](auto& p, auto& q) { return p.y < q.y; });
+  const double span = std::max(right->x - left->x, highest->y - lowest->y);
   if (!(span >= smallest_span)) {
     findings.error(file, fmt::format("all points lie within {:.9g} mm: a surface needs at least 1e-6 mm", span), "coordinates are in mm");
     return false;
@@ -142,11 +99,10 @@ Triangulation triangulate(const PointCloud& cloud, double max_edge) {
   Triangulation result;
   Findings& findings = result.findings;
   if (!coordinates_are_legal(cloud, findings)) return result;
-  const Box box = box_of(cloud.points);
   // From here on points go by their numbers along the curve: what is near on the surface is near in memory.
-  const PointCloud places = distinct_places(cloud, box, findings);
-  if (findings.has_errors() || !spread_is_legal(places, box, findings)) return result;
-  std::vector<RawFacet> facets = delaunay(places);
+  const PointCloud places = distinct_places(cloud, findings);
+  if (findings.has_errors() || !spread_is_legal(places, findings)) return result;
+  std::vector<RawFacet> facets = delaunay(places.points);
   const prescription::Place file{cloud.file};
   if (facets.empty()) {
     findings.error(file, "all points lie on one straight line in (x, y)", "a surface needs points on both sides of it");

@@ -4,7 +4,8 @@
 #include <CGAL/Triangulation_face_base_with_info_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
-#include "lib/scene/mesh_internal.h"
+#include "lib/scene/delaunay.h"
+#include "lib/surface/mesh.h"
 
 namespace sagitta::scene {
 namespace {
@@ -16,16 +17,16 @@ using Delaunay = CGAL::Delaunay_triangulation_2<Kernel, CGAL::Triangulation_data
 
 }  // namespace
 
-std::vector<RawFacet> delaunay(const prescription::PointCloud& places) {
+std::vector<RawFacet> delaunay(const std::vector<numerics::Vec3<double>>& points) {
   Delaunay triangulation;
   // Every 4^k-th point along the curve, k falling: each is near the one before, and the triangles are never far from
   // what they will be.
-  const std::size_t count = places.points.size();
+  const std::size_t count = points.size();
   std::size_t stride = 1;
   while (stride < count) stride *= 4;
   Delaunay::Face_handle near_last;
   const auto insert = [&](std::size_t i) {
-    const auto vertex = triangulation.insert({places.points[i].x, places.points[i].y}, near_last);
+    const auto vertex = triangulation.insert({points[i].x, points[i].y}, near_last);
     vertex->info() = static_cast<std::uint32_t>(i);
     near_last = vertex->face();
   };

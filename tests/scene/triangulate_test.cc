@@ -165,6 +165,27 @@ TEST(Triangulate, GivesTheSameMeshForTheSamePoints) {
   }
 }
 
+// Cocircular points, in any order: the facets are a function of the set of points.
+TEST(Triangulate, GivesTheSameFacetsForTheSamePointsInAnyOrder) {
+  for (const Layout& layout : all_layouts(2000)) {
+    std::vector<Place2> places = layout.places;
+    const auto facets_of = [&] {
+      const auto mesh = triangulate(cloud_of(places, sphere(9))).mesh;
+      std::set<std::array<V, 3>, decltype([](const auto& a, const auto& b) {
+                 const auto key = [](const auto& t) { return std::array{t[0].x, t[0].y, t[1].x, t[1].y, t[2].x, t[2].y}; };
+                 return key(a) < key(b);
+               })> facets;
+      for (const auto& facet : mesh->facets) facets.insert({mesh->vertices[facet.corner[0]], mesh->vertices[facet.corner[1]], mesh->vertices[facet.corner[2]]});
+      return facets;
+    };
+    const auto straight = facets_of();
+    std::shuffle(places.begin(), places.end(), std::mt19937_64(3));
+    const auto shuffled = facets_of();
+    EXPECT_TRUE(std::equal(straight.begin(), straight.end(), shuffled.begin(), shuffled.end())) << layout.name;
+    EXPECT_GT(straight.size(), 3000u);
+  }
+}
+
 // What rays rely on: orientation, neighbours that are each other's, a rectangle in every cell it meets.
 void expect_sound(const MeshStorage& storage) {
   const auto& mesh = storage.mesh;
