@@ -11,15 +11,15 @@ namespace {
 constexpr auto cubic_terms = static_cast<std::size_t>(CubicFit::cubic_terms);
 constexpr std::size_t height = cubic_terms;  // the column
 
-constexpr double most_amplified = 1e6;   // the right side of (3)
-constexpr double narrowest = 1e-12;      // of (s_v / s_y)^2: below this, what is left across a line of points is rounding
+constexpr double most_amplified = 1e6;  // the right side of (3)
 constexpr double smallest_square = 1e-290;
 
 // (1), from sums of X^2, XY and Y^2. Points that all lie on one line through V leave it zero, and nothing is determined.
 CubicFit coordinates_of(double count, double xx, double xy, double yy) {
   const double shear = xy / xx, vv = yy - shear * xy;
   CubicFit fit;
-  if (!(xx > smallest_square && vv > smallest_square && vv > narrowest * yy)) return fit;
+  // (Rounding may leave a line some vv, about eps yy, far above the true one: then v is small, and (3) refuses it.)
+  if (!(xx > smallest_square && vv > smallest_square)) return fit;
   fit.u_per_x = std::sqrt(count / xx);
   fit.v_per_y = std::sqrt(count / vv);
   fit.shear = shear;

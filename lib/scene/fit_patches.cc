@@ -75,7 +75,8 @@ class VertexFits {
     }
     sort_by_number(rings_.vertices().subspan(1), sorted_);
     cubics_.put(lane, mesh_.vertices[vertex], mesh_.vertices, sorted_);
-    reaches_rim_[vertex] = is_on_rim_[vertex] || std::any_of(sorted_.begin(), sorted_.end(), [&](std::uint32_t v) { return is_on_rim_[v]; });
+    // (a vertex of the rim has neighbours there)
+    reaches_rim_[vertex] = std::any_of(sorted_.begin(), sorted_.end(), [&](std::uint32_t v) { return is_on_rim_[v]; });
     return is_all;
   }
 

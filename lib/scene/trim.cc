@@ -59,8 +59,12 @@ RawFacet from_widest_corner(const PointCloud& cloud, const RawFacet& facet) {
   double longest = -1;
   for (std::size_t i = 0; i < 3; ++i) {
     const double square = square_of_edge(cloud, facet, i);
-    // Of equal ones that of the lowest corner, wherever the facet begins.
-    if (square > longest || (square == longest && facet.corner[i] < facet.corner[static_cast<std::size_t>(first)])) {
+    const auto is_before = [&](std::size_t j, std::size_t k) {
+      const auto &p = cloud.points[facet.corner[j]], &q = cloud.points[facet.corner[k]];
+      return p.x != q.x ? p.x < q.x : p.y < q.y;
+    };
+    // Of equal ones that of the first corner in (x, y), whatever the facet's order and the points' numbers.
+    if (square > longest || (square == longest && is_before(i, static_cast<std::size_t>(first)))) {
       longest = square;
       first = static_cast<std::ptrdiff_t>(i);
     }

@@ -177,7 +177,10 @@ TEST(CubicFits, determine_as_many_terms_as_the_points_do) {
     std::iota(numbers.begin(), numbers.end(), 0u);
     CubicFits fits;
     fits.put(0, {}, points.data(), numbers);
-    return fits.solve()[0].terms;
+    const CubicFit fit = fits.solve()[0];
+    const auto slope = fit.gradient(0.3, 0.4);
+    EXPECT_TRUE(std::isfinite(slope.x) && std::isfinite(slope.y));
+    return fit.terms;
   };
   std::vector<Place2> circle, line, axis;
   for (int i = 0; i < 20; ++i) {
@@ -190,6 +193,14 @@ TEST(CubicFits, determine_as_many_terms_as_the_points_do) {
   EXPECT_EQ(terms_of(uniform_random(4, 1, 3)), 2);
   EXPECT_EQ(terms_of(circle), 5);
   EXPECT_EQ(terms_of(line), 0);
+  Uniform u(8);
+  for (int round = 0; round < 100; ++round) {
+    const double slope = u(-10, 10);
+    std::vector<Place2> aslant;
+    for (int i = 0; i < 20; ++i) aslant.push_back({u(-1, 1), 0});
+    for (Place2& p : aslant) p.y = slope * p.x;  // rounded
+    EXPECT_EQ(terms_of(aslant), 0);
+  }
   EXPECT_EQ(terms_of(axis), 0);
   EXPECT_EQ(terms_of({}), 0);
 }
