@@ -25,6 +25,7 @@
 #include "lib/trace/launch.h"
 #include "lib/trace/pattern.h"
 #include "lib/trace/trace.h"
+#include "tools/bench_preparation.h"
 
 namespace {
 
@@ -156,7 +157,10 @@ class MedianKeeper : public benchmark::ConsoleReporter {
   MedianKeeper() : ConsoleReporter(OO_None) {}  // no colours: it is read from files too
   void ReportRuns(const std::vector<Run>& runs) override {
     for (const Run& run : runs)
-      if (run.aggregate_name == "median" && !run.error_occurred) medians[run.run_name.function_name] = run.counters.at("items_per_second");
+      if (run.aggregate_name == "median" && !run.error_occurred) {
+        const auto rate = run.counters.find("items_per_second");
+        if (rate != run.counters.end()) medians[run.run_name.function_name] = rate->second;
+      }
     ConsoleReporter::ReportRuns(runs);
   }
   std::map<std::string, double> medians;
@@ -191,6 +195,7 @@ int main(int argc, char** argv) {
       benchmark::RegisterBenchmark((std::string(c.name) + (all ? all_threads : one_thread)).c_str(), [c, all](benchmark::State& state) {
         measure(state, c.kind, c.point_count, c.are_random, all ? 0 : 1);
       })->UseManualTime()->Unit(benchmark::kMillisecond);
+  bench::register_preparation();
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   fmt::print(stderr, "{}; compiler {}\n", processor(), __VERSION__);

@@ -3,11 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <utility>
 
-#include "lib/scene/cloud_fit.h"
 #include "lib/scene/mesh_internal.h"
 
 namespace sagitta::scene {
@@ -20,93 +18,46 @@ using surface::Facet;
 using surface::Mesh;
 using surface::no_facet;
 
-// Where the whole cloud lies, holes not counted. Everything that steers a ray depends on it, and not on the facets at
-// hand: part of a cloud's facets give a ray the same bits as all of them.
-struct Extent {
-  Vec3<double> low, high;
-  Vec3<double> centre;  // medians, which a stray point far away does not move
-  double reach = 0;     // the largest distance of a coordinate from the centre's
-};
-Extent extent_of(const PointCloud& cloud) {
-  constexpr double inf = std::numeric_limits<double>::infinity();
-  Extent box{{inf, inf, inf}, {-inf, -inf, -inf}, {}};
-  for (const Vec3<double>& p : cloud.points) {
-    if (std::isnan(p.z)) continue;
-    box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
-    box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
-  }
-  const std::vector<Vec3<double>> some = sample_of(cloud.points);
-  std::vector<double> values(some.size());
-  const auto median = [&](auto&& coordinate) {
-    std::transform(some.begin(), some.end(), values.begin(), coordinate);
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
+// The facets in the order of their corners' numbers, the lowest corner first: the numbers run along a curve, so what is
+// near on the surface is near in memory, and the order of any two facets depends on nothing else.
+void sort_by_corners(std::size_t point_count, std::vector<RawFacet>& facets) {
+  const auto lowest = [](const RawFacet& facet) { return std::min({facet.corner[0], facet.corner[1], facet.corner[2]}); };
+  const auto all = [](const RawFacet& facet) {
+    auto corners = facet.corner;
+    std::sort(corners.begin(), corners.end());
+    return corners;
   };
-  box.centre = {median([](const auto& p) { return p.x; }), median([](const auto& p) { return p.y; }), median([](const auto& p) { return p.z; })};
-  const Vec3<double> up = box.high - box.centre, down = box.centre - box.low;
-  box.reach = std::max({up.x, up.y, up.z, down.x, down.y, down.z});
-  return box;
-}
-
-// Bits of two 16-bit numbers, interleaved: the place on Morton's curve.
-std::uint64_t interleaved(std::uint32_t x, std::uint32_t y) {
-  const auto spread = [](std::uint64_t v) {
-    v = (v | (v << 8)) & 0x00FF00FF;
-    v = (v | (v << 4)) & 0x0F0F0F0F;
-    v = (v | (v << 2)) & 0x33333333;
-    return (v | (v << 1)) & 0x55555555;
-  };
-  return spread(x) | (spread(y) << 1);
-}
-
-// The facets along Morton's curve: what is near on the surface is near in memory. The order of any two depends on nothing
-// but their corners and the cloud's extent.
-void sort_along_curve(const PointCloud& cloud, const Extent& box, std::vector<RawFacet>& facets) {
-  const auto place = [](double sum, double low, double high) {  // of three coordinates
-    return high > low ? static_cast<std::uint32_t>(std::clamp((sum / 3 - low) / (high - low), 0.0, 1.0) * 65535) : 0u;
-  };
-  std::vector<std::uint64_t> keys(facets.size());
-  for (std::size_t f = 0; f < facets.size(); ++f) {
-    const auto& [i, j, k] = facets[f].corner;
-    const auto &a = cloud.points[i], &b = cloud.points[j], &c = cloud.points[k];
-    keys[f] = interleaved(place(a.x + b.x + c.x, box.low.x, box.high.x), place(a.y + b.y + c.y, box.low.y, box.high.y)) << 32 | f;
-  }
-  std::sort(keys.begin(), keys.end());
-  const auto facet_of = [&](std::uint64_t key) -> const RawFacet& { return facets[static_cast<std::uint32_t>(key)]; };
-  for (auto run = keys.begin(); run != keys.end();) {
-    const auto end = std::find_if(run, keys.end(), [&](std::uint64_t key) { return key >> 32 != *run >> 32; });
-    if (end - run > 1) std::sort(run, end, [&](std::uint64_t a, std::uint64_t b) { return facet_of(a).corner < facet_of(b).corner; });
-    run = end;
-  }
+  std::vector<std::uint32_t> begin(point_count + 1, 0);
+  for (const RawFacet& facet : facets) ++begin[lowest(facet) + 1];
+  for (std::size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
+  std::vector<std::uint32_t> order(facets.size()), filled(begin.begin(), begin.end() - 1);
+  for (std::uint32_t f = 0; f < facets.size(); ++f) order[filled[lowest(facets[f])]++] = f;
+  for (std::size_t i = 0; i < point_count; ++i)
+    std::sort(order.begin() + begin[i], order.begin() + begin[i + 1],
+              [&](std::uint32_t f, std::uint32_t g) { return all(facets[f]) < all(facets[g]); });
   std::vector<std::uint32_t> new_index(facets.size());
-  for (std::size_t k = 0; k < keys.size(); ++k) new_index[static_cast<std::uint32_t>(keys[k])] = static_cast<std::uint32_t>(k);
+  for (std::uint32_t k = 0; k < order.size(); ++k) new_index[order[k]] = k;
   std::vector<RawFacet> sorted(facets.size());
-  for (std::size_t k = 0; k < keys.size(); ++k) {
-    RawFacet& facet = sorted[k] = facet_of(keys[k]);
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    RawFacet& facet = sorted[k] = facets[order[k]];
     for (std::uint32_t& next : facet.neighbour) next = next == no_facet ? no_facet : new_index[next];
   }
   facets = std::move(sorted);
 }
 
-// Vertices in the order in which the facets first use them.
-void take_vertices(const PointCloud& cloud, const std::vector<RawFacet>& facets, MeshStorage& mesh) {
-  std::vector<std::uint32_t> vertex_of(cloud.points.size(), no_facet);
-  mesh.corners.reserve(facets.size());
-  mesh.vertices.reserve(std::min(cloud.points.size(), facets.size() + 2));
-  mesh.points.reserve(mesh.vertices.capacity());
-  for (const RawFacet& raw : facets) {
-    Corners& corners = mesh.corners.emplace_back();
-    for (std::size_t i = 0; i < 3; ++i) {
-      std::uint32_t& vertex = vertex_of[raw.corner[i]];
-      if (vertex == no_facet) {
-        vertex = static_cast<std::uint32_t>(mesh.vertices.size());
-        mesh.vertices.push_back(cloud.points[raw.corner[i]]);
-        mesh.points.push_back(raw.corner[i]);
-      }
-      corners[i] = vertex;
-    }
+// The places that facets use, in their order.
+void take_vertices(const PointCloud& places, const std::vector<RawFacet>& facets, MeshStorage& mesh) {
+  std::vector<std::uint32_t> vertex_of(places.points.size(), 0);
+  for (const RawFacet& facet : facets)
+    for (const std::uint32_t corner : facet.corner) vertex_of[corner] = 1;
+  for (std::size_t i = 0; i < vertex_of.size(); ++i) {
+    if (!vertex_of[i]) continue;
+    vertex_of[i] = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.push_back(places.points[i]);
   }
+  mesh.corners.reserve(facets.size());
+  for (const RawFacet& facet : facets)
+    mesh.corners.push_back({vertex_of[facet.corner[0]], vertex_of[facet.corner[1]], vertex_of[facet.corner[2]]});
 }
 
 // surface/mesh.h, Facet. In long double, so that the plane of a thin facet still passes through its corners.
@@ -150,7 +101,8 @@ void refuse_cliffs(const PointCloud& cloud, const std::vector<RawFacet>& facets,
     const auto length = [&](int i) { return edge_length(cloud, facets[f], i); };
     const int shortest = length(0) < length(1) ? (length(0) < length(2) ? 0 : 2) : (length(1) < length(2) ? 1 : 2);
     const auto corner = [&](int i) { return facets[f].corner[static_cast<std::size_t>(i % 3)]; };
-    const auto [first, second] = std::minmax({corner(shortest + 1), corner(shortest + 2)});
+    const auto by_line = [&](std::uint32_t a, std::uint32_t b) { return place_of(cloud, a).line < place_of(cloud, b).line; };
+    const auto [first, second] = std::minmax({corner(shortest + 1), corner(shortest + 2)}, by_line);
     if (!told.emplace(first, second).second) continue;
     findings.error(place_of(cloud, second),
                    fmt::format("two points so near one place that no slope can be told: the other one is in line {}",
@@ -161,21 +113,20 @@ void refuse_cliffs(const PointCloud& cloud, const std::vector<RawFacet>& facets,
 
 }  // namespace
 
-std::shared_ptr<const MeshStorage> build_mesh(const PointCloud& cloud, std::vector<RawFacet> facets,
+std::shared_ptr<const MeshStorage> build_mesh(const PointCloud& places, const CloudExtent& extent, std::vector<RawFacet> facets,
                                               prescription::Findings& findings) {
   auto storage = std::make_shared<MeshStorage>();
   Mesh& mesh = storage->mesh;
-  const Extent box = extent_of(cloud);
-  mesh.centre = box.centre;
-  mesh.extent = box.reach;
-  sort_along_curve(cloud, box, facets);
-  take_vertices(cloud, facets, *storage);
+  mesh.centre = extent.centre;
+  mesh.extent = extent.reach;
+  mesh.base = extent.base;
+  sort_by_corners(places.points.size(), facets);
+  take_vertices(places, facets, *storage);
   make_facets(facets, *storage);
-  refuse_cliffs(cloud, facets, *storage, findings);
+  refuse_cliffs(places, facets, *storage, findings);
   if (findings.has_errors()) return nullptr;
   facets = {};
 
-  mesh.base = fit_base_sphere(cloud.points, mesh.centre);
   mesh.vertices = storage->vertices.data();
   mesh.corners = storage->corners.data();
   mesh.facets = storage->facets.data();

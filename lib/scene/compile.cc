@@ -48,7 +48,7 @@ surface::Shape interpolate(const surface::Facets& facets, const prescription::Pa
   if (interpolation == "cubic") return radial<RadialFunction::cubic>(facets, given, arena);
   if (interpolation == "thin_plate") return radial<RadialFunction::thin_plate>(facets, given, arena);
   if (interpolation == "multiquadric") return radial<RadialFunction::multiquadric>(facets, given, arena);
-  return surface::Patches{facets, arena.keep(fit_patches(*facets.mesh))};
+  return surface::Patches{facets, arena.keep(fit_patches(*facets.mesh).patches)};
 }
 
 // The facets under a shape made of points; null for other shapes.

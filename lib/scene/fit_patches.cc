@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lib/scene/fit_patches.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "lib/numerics/parallel.h"
+#include "lib/scene/cubic_fit.h"
 #include "lib/scene/rings.h"
 
 namespace sagitta::scene {
@@ -13,98 +14,134 @@ namespace {
 
 using numerics::Vec3;
 using surface::CloughTocherPatch;
-using surface::Facet;
 using surface::Mesh;
-using surface::no_facet;
 
-constexpr int cubic_terms = 9;
-// X, Y, X^2, XY, Y^2, X^3, X^2 Y, X Y^2, Y^3
-using Polynomial = std::array<double, cubic_terms>;
+constexpr std::size_t block_size = 2048;  // vertices or facets
+constexpr int least_rings = 2;
+constexpr std::size_t most_points = 300;  // where a neighbourhood grows no more
 
-CloughTocherPatch::Slope gradient(const Polynomial& c, double X, double Y) {
-  return {c[0] + 2 * c[2] * X + c[3] * Y + 3 * c[5] * X * X + 2 * c[6] * X * Y + c[7] * Y * Y,
-          c[1] + c[3] * X + 2 * c[4] * Y + c[6] * X * X + 2 * c[7] * X * Y + 3 * c[8] * Y * Y};
+// In the order of their numbers, so that the bits do not depend on the order in which rings reach them. Few are sorted by
+// counting for each how many are less: nothing could predict the branches of another sort.
+void sort_by_number(std::span<const std::uint32_t> vertices, std::vector<std::uint32_t>& sorted) {
+  sorted.assign(vertices.begin(), vertices.end());
+  if (vertices.size() > 64) return std::sort(sorted.begin(), sorted.end());
+  for (const std::uint32_t vertex : vertices) {
+    std::uint32_t rank = 0;
+    for (const std::uint32_t other : vertices) rank += other < vertex;
+    sorted[rank] = vertex;
+  }
 }
 
-class VertexFit {
+// The fits of a few vertices at a time, into the results.
+class VertexFits {
  public:
-  explicit VertexFit(const Mesh& mesh) : mesh_(mesh), rings_(mesh) {}
+  VertexFits(const Mesh& mesh, const Neighbours& neighbours, const std::vector<char>& is_on_rim, std::vector<CubicFit>& fits,
+             std::vector<char>& reaches_rim)
+      : mesh_(mesh), is_on_rim_(is_on_rim), fits_(fits), reaches_rim_(reaches_rim), rings_(neighbours) {}
 
-  Polynomial at(std::uint32_t vertex) {
-    rings_.start({vertex});
-    rings_.add_ring();
-    rings_.add_ring();
-    constexpr std::size_t most_points = 300;
-    for (;;) {
-      Polynomial result{};
-      if (solve(vertex, cubic_terms, result)) return result;
-      const std::size_t before = rings_.vertices().size();
-      if (before < most_points) rings_.add_ring();
-      if (rings_.vertices().size() > before) continue;
-      if (solve(vertex, 5, result) || solve(vertex, 2, result)) return result;
-      return {};
+  // From two rings on, with more for those vertices alone that need them.
+  void operator()(std::uint32_t begin, std::uint32_t end) {
+    waiting_.clear();
+    for (std::uint32_t vertex = begin; vertex < end; ++vertex) waiting_.push_back(vertex);
+    for (int rings = least_rings; !waiting_.empty(); rings += rings / 2) {
+      unfinished_.clear();
+      for (std::size_t from = 0; from < waiting_.size(); from += CubicFits::lanes)
+        fit(std::span(waiting_).subspan(from, std::min(CubicFits::lanes, waiting_.size() - from)), rings);
+      waiting_.swap(unfinished_);
     }
   }
 
  private:
-  bool solve(std::uint32_t vertex, int terms, Polynomial& result) {
-    const std::vector<std::uint32_t>& around = rings_.vertices();  // the vertex itself is the first
-    const auto count = static_cast<Eigen::Index>(around.size() - 1);
-    if (count < terms) return false;
-    const Vec3<double> v = mesh_.vertices[vertex];
-    double scale = 0;
-    for (const std::uint32_t i : around) scale = std::max(scale, std::hypot(mesh_.vertices[i].x - v.x, mesh_.vertices[i].y - v.y));
-    matrix_.resize(count, cubic_terms);
-    right_.resize(count);
-    for (Eigen::Index row = 0; row < count; ++row) {
-      const Vec3<double> q = mesh_.vertices[around[static_cast<std::size_t>(row) + 1]] - v;
-      const double X = q.x / scale, Y = q.y / scale;
-      matrix_.row(row) << X, Y, X * X, X * Y, Y * Y, X * X * X, X * X * Y, X * Y * Y, Y * Y * Y;
-      right_(row) = q.z;
+  void fit(std::span<const std::uint32_t> vertices, int rings) {
+    std::array<bool, CubicFits::lanes> is_all{};
+    for (std::size_t lane = 0; lane < vertices.size(); ++lane) is_all[lane] = gather(vertices[lane], rings, lane);
+    const auto fitted = cubics_.solve();
+    for (std::size_t lane = 0; lane < vertices.size(); ++lane) {
+      if (fitted[lane].terms == CubicFit::cubic_terms || is_all[lane]) fits_[vertices[lane]] = fitted[lane];
+      else unfinished_.push_back(vertices[lane]);
     }
-    Eigen::MatrixXd used = matrix_.leftCols(terms);
-    Eigen::VectorXd size = used.colwise().norm().cwiseMax(1e-300);
-    used = used * size.cwiseInverse().asDiagonal();
-    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(used);
-    qr.setThreshold(1e-3);
-    if (qr.rank() < terms) return false;
-    const Eigen::VectorXd solution = size.cwiseInverse().asDiagonal() * qr.solve(right_);
-    constexpr std::array<int, cubic_terms> degree{1, 1, 2, 2, 2, 3, 3, 3, 3};
-    for (int i = 0; i < terms; ++i) result[static_cast<std::size_t>(i)] = solution(i) / std::pow(scale, degree[static_cast<std::size_t>(i)]);
-    return true;
+  }
+
+  // True if further rings would add nothing that may be taken.
+  bool gather(std::uint32_t vertex, int rings, std::size_t lane) {
+    rings_.start({vertex});
+    bool is_all = false;
+    for (int ring = 1; ring <= rings && !is_all; ++ring) {
+      const std::size_t before = rings_.vertices().size();
+      rings_.add_ring();
+      const std::size_t now = rings_.vertices().size();
+      is_all = now == before || (ring >= least_rings && now >= most_points);
+    }
+    sort_by_number(rings_.vertices().subspan(1), sorted_);
+    cubics_.put(lane, mesh_.vertices[vertex], mesh_.vertices, sorted_);
+    // (a vertex of the rim has neighbours there)
+    reaches_rim_[vertex] = std::any_of(sorted_.begin(), sorted_.end(), [&](std::uint32_t v) { return is_on_rim_[v]; });
+    return is_all;
   }
 
   const Mesh& mesh_;
+  const std::vector<char>& is_on_rim_;
+  std::vector<CubicFit>& fits_;
+  std::vector<char>& reaches_rim_;
   Rings rings_;
-  Eigen::Matrix<double, Eigen::Dynamic, cubic_terms> matrix_;
-  Eigen::VectorXd right_;
+  CubicFits cubics_;
+  std::vector<std::uint32_t> waiting_, unfinished_, sorted_;
 };
+
+std::vector<char> vertices_on_rim(const Mesh& mesh) {
+  std::vector<char> is_on_rim(mesh.vertex_count, false);
+  for (std::uint32_t f = 0; f < mesh.facet_count; ++f)
+    for (int i = 0; i < 3; ++i) {
+      if (mesh.facets[f].neighbour[i] == surface::no_facet)
+        is_on_rim[mesh.corners[f][(i + 1) % 3]] = is_on_rim[mesh.corners[f][(i + 2) % 3]] = true;
+    }
+  return is_on_rim;
+}
+
+CloughTocherPatch patch_of(const Mesh& mesh, const surface::Corners& corner, const std::vector<CubicFit>& fits) {
+  CloughTocherPatch::Corner corners[3];
+  CloughTocherPatch::Slope slopes[3];
+  for (int i = 0; i < 3; ++i) {
+    const std::uint32_t v = corner[i];
+    const auto slope = fits[v].gradient(0, 0);
+    corners[i] = {mesh.vertices[v], slope.x, slope.y};
+    // both facets of the edge take its ends in the same order, so their slopes have the same bits
+    const auto [a, b] = std::minmax(corner[(i + 1) % 3], corner[(i + 2) % 3]);
+    const double X = (mesh.vertices[b].x - mesh.vertices[a].x) / 2, Y = (mesh.vertices[b].y - mesh.vertices[a].y) / 2;
+    const auto from_a = fits[a].gradient(X, Y), from_b = fits[b].gradient(-X, -Y);
+    slopes[i] = {(from_a.x + from_b.x) / 2, (from_a.y + from_b.y) / 2};
+  }
+  return CloughTocherPatch::of(corners, slopes);
+}
+
+// work(begin, end) on blocks of 0 .. count
+template <class MakeWorker>
+void share(std::uint32_t count, int thread_count, const MakeWorker& make_worker) {
+  numerics::share_blocks((count + block_size - 1) / block_size, thread_count, [&] {
+    return [&, worker = make_worker()](std::size_t block) mutable {
+      worker(static_cast<std::uint32_t>(block * block_size), static_cast<std::uint32_t>(std::min<std::size_t>(count, (block + 1) * block_size)));
+    };
+  });
+}
 
 }  // namespace
 
-std::vector<CloughTocherPatch> fit_patches(const Mesh& mesh) {
-  std::vector<Polynomial> fits(mesh.vertex_count);
-  VertexFit fit(mesh);
-  for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) fits[v] = fit.at(v);
-
-  std::vector<CloughTocherPatch> patches;
-  patches.reserve(mesh.facet_count);
-  for (std::uint32_t f = 0; f < mesh.facet_count; ++f) {
-    const surface::Corners& corner = mesh.corners[f];
-    CloughTocherPatch::Corner corners[3];
-    CloughTocherPatch::Slope slopes[3];
-    for (int i = 0; i < 3; ++i) {
-      const std::uint32_t v = corner[i];
-      corners[i] = {mesh.vertices[v], fits[v][0], fits[v][1]};
-      // both facets of the edge take its ends in the same order, so their slopes have the same bits
-      const auto [a, b] = std::minmax(corner[(i + 1) % 3], corner[(i + 2) % 3]);
-      const double X = (mesh.vertices[b].x - mesh.vertices[a].x) / 2, Y = (mesh.vertices[b].y - mesh.vertices[a].y) / 2;
-      const auto from_a = gradient(fits[a], X, Y), from_b = gradient(fits[b], -X, -Y);
-      slopes[i] = {(from_a.x + from_b.x) / 2, (from_a.y + from_b.y) / 2};
-    }
-    patches.push_back(CloughTocherPatch::of(corners, slopes));
+PatchFit fit_patches(const Mesh& mesh, int thread_count) {
+  PatchFit result;
+  result.reaches_rim.resize(mesh.vertex_count);
+  std::vector<CubicFit> fits(mesh.vertex_count);
+  {
+    const Neighbours neighbours(mesh);
+    const std::vector<char> is_on_rim = vertices_on_rim(mesh);
+    share(mesh.vertex_count, thread_count, [&] { return VertexFits(mesh, neighbours, is_on_rim, fits, result.reaches_rim); });
   }
-  return patches;
+  result.patches.resize(mesh.facet_count);
+  share(mesh.facet_count, thread_count, [&] {
+    return [&](std::uint32_t begin, std::uint32_t end) {
+      for (std::uint32_t f = begin; f < end; ++f) result.patches[f] = patch_of(mesh, mesh.corners[f], fits);
+    };
+  });
+  return result;
 }
 
 }  // namespace sagitta::scene

@@ -18,7 +18,14 @@
 
 namespace sagitta::scene {
 
-// One patch for every facet of the mesh.
-std::vector<surface::CloughTocherPatch> fit_patches(const surface::Mesh& mesh);
+struct PatchFit {
+  std::vector<surface::CloughTocherPatch> patches;  // one a facet
+  // Of each vertex: a point that its cubic was fitted to, or the vertex itself, lies on the rim or on a hole. A patch with
+  // no such corner would have the same bits in a larger mesh that has the same facets there.
+  std::vector<char> reaches_rim;
+};
+
+// On `thread_count` threads (0: as many as the machine runs), with the same bits for any number.
+PatchFit fit_patches(const surface::Mesh& mesh, int thread_count = 0);
 
 }  // namespace sagitta::scene

@@ -42,14 +42,15 @@ RadialFit<function> fit_radial(const surface::Mesh& mesh, const RadialOptions& o
   const double shape = options.shape_mm > 0 ? options.shape_mm : mean_edge_length(mesh);
   fit.shape_squared = function == RadialFunction::multiquadric ? shape * shape : 0;
   fit.patches.reserve(mesh.facet_count);
-  Rings rings(mesh);
+  const Neighbours neighbours(mesh);
+  Rings rings(neighbours);
   Eigen::MatrixXd matrix;
   Eigen::VectorXd right;
   for (std::uint32_t f = 0; f < mesh.facet_count; ++f) {
     const surface::Corners& corner = mesh.corners[f];
     rings.start({corner[0], corner[1], corner[2]});
     for (int ring = 0; ring < options.rings; ++ring) rings.add_ring();
-    const std::vector<std::uint32_t>& nodes = rings.vertices();
+    const std::span<const std::uint32_t> nodes = rings.vertices();
     const auto count = static_cast<Eigen::Index>(nodes.size());
     const auto& v0 = mesh.vertices[corner[0]];
     double scale = 0;

@@ -2,27 +2,17 @@
 // The steps between the triangulation and the mesh, each in a file of its own.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "lib/scene/delaunay.h"
 #include "lib/scene/triangulate.h"
 
 namespace sagitta::scene {
 
 inline constexpr double steepest_slope = 1e9;
-
-// One facet of the whole triangulation: corners are indices of the cloud's points, anticlockwise; neighbour[i] is
-// across the edge opposite to corner[i], no_facet across the hull.
-struct RawFacet {
-  std::array<std::uint32_t, 3> corner, neighbour;
-};
-
-// What triangulates (triangulate.cc): the facets of the points `places` of the cloud, which are distinct in (x, y).
-// None if all lie on a straight line.
-std::vector<RawFacet> delaunay(const prescription::PointCloud& cloud, const std::vector<std::uint32_t>& places);
 
 // Length of the edge in (x, y) opposite to corner i.
 double edge_length(const prescription::PointCloud& cloud, const RawFacet& facet, int i);
@@ -37,9 +27,18 @@ struct Trimmed {
 };
 Trimmed trim(const prescription::PointCloud& cloud, std::vector<RawFacet> facets, double max_edge);
 
-// Vertices and facets in the order of a space-filling curve, with slopes, grid and base sphere. Facets without a slope
-// are errors.
-std::shared_ptr<const MeshStorage> build_mesh(const prescription::PointCloud& cloud, std::vector<RawFacet> facets,
+// Where the whole cloud lies, holes not counted. All that steers a ray depends on it, and not on the facets at hand: part
+// of a cloud's facets give a ray the same bits as all of them.
+struct CloudExtent {
+  double low_x, low_y, high_x, high_y;
+  numerics::Vec3<double> centre;  // medians, which a stray point far away does not move
+  double reach;                   // the largest distance of a coordinate from the centre's
+  surface::BaseSphere base;
+};
+CloudExtent extent_of(const prescription::PointCloud& cloud);
+
+// Vertices and facets in the order of the places, which run along a curve. Facets without a slope are errors.
+std::shared_ptr<const MeshStorage> build_mesh(const prescription::PointCloud& places, const CloudExtent& extent, std::vector<RawFacet> facets,
                                               prescription::Findings& findings);
 
 // The grid and the tree of boxes of a mesh whose vertices and facets are there.

@@ -30,6 +30,7 @@ class Neighbours {
     std::vector<std::uint32_t> filled(begin_.begin(), begin_.end() - 1);
     for_each_edge([&](std::uint32_t a, std::uint32_t b) { list_[filled[a]++] = b, list_[filled[b]++] = a; });
   }
+  std::size_t vertex_count() const { return begin_.size() - 1; }
   std::span<const std::uint32_t> of(std::uint32_t vertex) const {
     return {list_.data() + begin_[vertex], begin_[vertex + 1] - begin_[vertex]};
   }
@@ -41,33 +42,35 @@ class Neighbours {
 // Grows ring by ring around a set of vertices.
 class Rings {
  public:
-  explicit Rings(const surface::Mesh& mesh) : neighbours_(mesh), seen_(mesh.vertex_count, 0) {}
+  explicit Rings(const Neighbours& neighbours) : neighbours_(neighbours), seen_(neighbours.vertex_count(), 0) {}
 
   void start(std::initializer_list<std::uint32_t> vertices) {
     ++round_;
-    vertices_.clear();
-    ring_begin_ = 0;
-    for (const std::uint32_t vertex : vertices) take(vertex);
+    count_ = ring_begin_ = 0;
+    take({vertices.begin(), vertices.end()});
   }
   void add_ring() {
-    const std::size_t end = vertices_.size();
-    for (; ring_begin_ < end; ++ring_begin_)
-      for (const std::uint32_t next : neighbours_.of(vertices_[ring_begin_])) take(next);
+    for (const std::size_t end = count_; ring_begin_ < end; ++ring_begin_) take(neighbours_.of(vertices_[ring_begin_]));
   }
   // In the order in which they were reached, the start first.
-  const std::vector<std::uint32_t>& vertices() const { return vertices_; }
+  std::span<const std::uint32_t> vertices() const { return {vertices_.data(), count_}; }
 
  private:
-  void take(std::uint32_t vertex) {
-    if (seen_[vertex] == round_) return;
-    seen_[vertex] = round_;
-    vertices_.push_back(vertex);
+  // Without branches on what was seen, which nothing could predict.
+  void take(std::span<const std::uint32_t> vertices) {
+    if (vertices_.size() < count_ + vertices.size()) vertices_.resize(2 * (count_ + vertices.size()));
+    for (const std::uint32_t vertex : vertices) {
+      vertices_[count_] = vertex;
+      count_ += seen_[vertex] != round_;
+      seen_[vertex] = round_;
+    }
   }
 
-  Neighbours neighbours_;
+  const Neighbours& neighbours_;
   std::vector<std::uint32_t> seen_;  // the round in which it was reached last
   std::uint32_t round_ = 0;
   std::vector<std::uint32_t> vertices_;
+  std::size_t count_ = 0;
   std::size_t ring_begin_ = 0;       // where the last ring begins
 };
 

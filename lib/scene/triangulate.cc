@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "lib/scene/mesh_internal.h"
@@ -32,16 +31,10 @@ bool coordinates_are_legal(const PointCloud& cloud, Findings& findings) {
   return !findings.has_errors();
 }
 
-// One point of every place, by (x, y). Of points at one place the first with a height stays; another height is an error.
-std::vector<std::uint32_t> distinct_places(const PointCloud& cloud, Findings& findings) {
+// One point of every place, along the curve. Of points at one place the first with a height stays; another height is an error.
+PointCloud distinct_places(const PointCloud& cloud, Findings& findings) {
   const auto& points = cloud.points;
-  std::vector<std::uint32_t> order(points.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    if (points[a].x != points[b].x) return points[a].x < points[b].x;
-    if (points[a].y != points[b].y) return points[a].y < points[b].y;
-    return a < b;
-  });
+  std::vector<std::uint32_t> order = along_curve(points);
   std::size_t count = 0, repeated = 0;
   std::uint32_t first_repeated = 0;
   for (const std::uint32_t i : order) {
@@ -67,20 +60,28 @@ std::vector<std::uint32_t> distinct_places(const PointCloud& cloud, Findings& fi
     findings.note(place_of(cloud, first_repeated), fmt::format("{} {} another, the first one here: merged", repeated,
                                                                repeated == 1 ? "point repeats" : "points repeat"));
   }
-  order.resize(count);
-  return order;
+  PointCloud places;
+  places.file = cloud.file;
+  places.points.reserve(count);
+  places.lines.reserve(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    places.points.push_back(points[order[k]]);
+    places.lines.push_back(static_cast<std::uint32_t>(place_of(cloud, order[k]).line));
+  }
+  return places;
 }
 
-bool spread_is_legal(const PointCloud& cloud, const std::vector<std::uint32_t>& places, Findings& findings) {
-  const prescription::Place file{cloud.file};
-  if (places.size() < 3) {
-    findings.error(file, fmt::format("{} {}: a surface needs at least 3", places.size(), places.size() == 1 ? "place" : "places"),
+bool spread_is_legal(const PointCloud& places, Findings& findings) {
+  const prescription::Place file{places.file};
+  const std::size_t count = places.points.size();
+  if (count < 3) {
+    findings.error(file, fmt::format("{} {}: a surface needs at least 3", count, count == 1 ? "place" : "places"),
                    "one point a line: x, y, z in mm");
     return false;
   }
-  const auto y = [&](std::uint32_t i) { return cloud.points[i].y; };
-  const auto [lowest, highest] = std::minmax_element(places.begin(), places.end(), [&](auto a, auto b) { return y(a) < y(b); });
-  const double span = std::max(cloud.points[places.back()].x - cloud.points[places.front()].x, y(*highest) - y(*lowest));
+  const auto [left, right] = std::minmax_element(places.points.begin(), places.points.end(), [](auto& p, auto& q) { return p.x < q.x; });
+  const auto [lowest, highest] = std::minmax_element(places.points.begin(), places.points.end(), [](auto& p, auto& q) { return p.y < q.y; });
+  const double span = std::max(right->x - left->x, highest->y - lowest->y);
   if (!(span >= smallest_span)) {
     findings.error(file, fmt::format("all points lie within {:.9g} mm: a surface needs at least 1e-6 mm", span), "coordinates are in mm");
     return false;
@@ -98,18 +99,16 @@ Triangulation triangulate(const PointCloud& cloud, double max_edge) {
   Triangulation result;
   Findings& findings = result.findings;
   if (!coordinates_are_legal(cloud, findings)) return result;
-  std::vector<RawFacet> facets;
-  {
-    const std::vector<std::uint32_t> places = distinct_places(cloud, findings);
-    if (findings.has_errors() || !spread_is_legal(cloud, places, findings)) return result;
-    facets = delaunay(cloud, places);
-  }
+  // From here on points go by their numbers along the curve: what is near on the surface is near in memory.
+  const PointCloud places = distinct_places(cloud, findings);
+  if (findings.has_errors() || !spread_is_legal(places, findings)) return result;
+  std::vector<RawFacet> facets = delaunay(places.points);
   const prescription::Place file{cloud.file};
   if (facets.empty()) {
     findings.error(file, "all points lie on one straight line in (x, y)", "a surface needs points on both sides of it");
     return result;
   }
-  Trimmed trimmed = trim(cloud, std::move(facets), max_edge);
+  Trimmed trimmed = trim(places, std::move(facets), max_edge);
   if (trimmed.facets.empty()) {
     findings.error(file,
                    fmt::format("no facet is left between the points: {} touch a hole, {} have an edge longer than max_edge_mm, "
@@ -118,7 +117,7 @@ Triangulation triangulate(const PointCloud& cloud, double max_edge) {
                    "points must be spread over an area");
     return result;
   }
-  result.mesh = build_mesh(cloud, std::move(trimmed.facets), findings);
+  result.mesh = build_mesh(places, extent_of(cloud), std::move(trimmed.facets), findings);
   return result;
 }
 

@@ -34,7 +34,6 @@ namespace sagitta::scene {
 // Owns the arrays that `mesh` looks at.
 struct MeshStorage {
   std::vector<numerics::Vec3<double>> vertices;
-  std::vector<std::uint32_t> points;  // of the cloud: which each vertex is
   std::vector<surface::Corners> corners;
   std::vector<surface::Facet> facets;
   std::vector<std::uint32_t> grid;

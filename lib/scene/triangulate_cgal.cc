@@ -4,10 +4,8 @@
 #include <CGAL/Triangulation_face_base_with_info_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
-#include <boost/iterator/transform_iterator.hpp>
-#include <utility>
-
-#include "lib/scene/mesh_internal.h"
+#include "lib/scene/delaunay.h"
+#include "lib/surface/mesh.h"
 
 namespace sagitta::scene {
 namespace {
@@ -19,18 +17,29 @@ using Delaunay = CGAL::Delaunay_triangulation_2<Kernel, CGAL::Triangulation_data
 
 }  // namespace
 
-std::vector<RawFacet> delaunay(const prescription::PointCloud& cloud, const std::vector<std::uint32_t>& places) {
-  const auto with_index = [&](std::uint32_t i) {
-    return std::pair(Kernel::Point_2(cloud.points[i].x, cloud.points[i].y), i);
+std::vector<RawFacet> delaunay(const std::vector<numerics::Vec3<double>>& points) {
+  Delaunay triangulation;
+  // Every 4^k-th point along the curve, k falling: each is near the one before, and the triangles are never far from
+  // what they will be.
+  const std::size_t count = points.size();
+  std::size_t stride = 1;
+  while (stride < count) stride *= 4;
+  Delaunay::Face_handle near_last;
+  const auto insert = [&](std::size_t i) {
+    const auto vertex = triangulation.insert({points[i].x, points[i].y}, near_last);
+    vertex->info() = static_cast<std::uint32_t>(i);
+    near_last = vertex->face();
   };
-  // A range of pairs is inserted in the order of a space-filling curve.
-  const Delaunay triangulation(boost::make_transform_iterator(places.begin(), with_index),
-                               boost::make_transform_iterator(places.end(), with_index));
+  for (std::size_t before = 0; stride > 0; before = stride, stride /= 4) {
+    for (std::size_t i = 0; i < count; i += stride) {
+      if (before == 0 || i % before != 0) insert(i);
+    }
+  }
   std::vector<RawFacet> facets;
   if (triangulation.dimension() < 2) return facets;
   facets.reserve(triangulation.number_of_faces());
-  std::uint32_t count = 0;
-  for (const auto face : triangulation.finite_face_handles()) face->info() = count++;
+  std::uint32_t facet_count = 0;
+  for (const auto face : triangulation.finite_face_handles()) face->info() = facet_count++;
   for (const auto face : triangulation.finite_face_handles()) {
     RawFacet& facet = facets.emplace_back();
     for (int i = 0; i < 3; ++i) {

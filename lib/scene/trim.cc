@@ -12,42 +12,63 @@ using surface::no_facet;
 
 constexpr double widest_circumradius = 2;  // in mean edge lengths
 
-// The mean length of the Delaunay edges at every point.
-std::vector<float> mean_edge_lengths(const PointCloud& cloud, const std::vector<RawFacet>& facets) {
-  struct Sum {
-    double length = 0;
-    std::uint32_t count = 0;
+double square_of_edge(const PointCloud& cloud, const RawFacet& facet, std::size_t i) {
+  const auto &a = cloud.points[facet.corner[(i + 1) % 3]], &b = cloud.points[facet.corner[(i + 2) % 3]];
+  const double dx = b.x - a.x, dy = b.y - a.y;
+  return dx * dx + dy * dy;
+}
+
+// The mean length of the Delaunay edges at a corner of a facet: anticlockwise around it, and where the hull ends that
+// clockwise. Edges go by their facet and the end that they have anticlockwise of the corner's.
+double mean_edge_length(const PointCloud& cloud, const std::vector<RawFacet>& facets, std::uint32_t first, std::uint32_t vertex) {
+  double sum = 0;
+  int count = 0;
+  const auto corner_in = [&](const RawFacet& facet) {
+    return static_cast<std::size_t>(std::find(facet.corner.begin(), facet.corner.end(), vertex) - facet.corner.begin());
   };
-  std::vector<Sum> sums(cloud.points.size());
-  for (std::uint32_t f = 0; f < facets.size(); ++f) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      const RawFacet& facet = facets[f];
-      if (facet.neighbour[i] < f) continue;  // every edge once
-      const double length = edge_length(cloud, facet, static_cast<int>(i));
-      for (const std::uint32_t end : {facet.corner[(i + 1) % 3], facet.corner[(i + 2) % 3]}) {
-        sums[end].length += length;
-        ++sums[end].count;
-      }
-    }
+  const auto add = [&](const RawFacet& facet, std::size_t opposite) {
+    sum += std::sqrt(square_of_edge(cloud, facet, opposite % 3));
+    ++count;
+  };
+  for (std::uint32_t f = first;;) {
+    const RawFacet& facet = facets[f];
+    const std::size_t i = corner_in(facet);
+    add(facet, i + 2);
+    f = facet.neighbour[(i + 1) % 3];
+    if (f == first) return sum / count;
+    if (f != no_facet) continue;
+    add(facet, i + 1);
+    break;
   }
-  std::vector<float> means(sums.size());
-  std::transform(sums.begin(), sums.end(), means.begin(),
-                 [](const Sum& sum) { return static_cast<float>(sum.length / std::max(sum.count, 1u)); });
-  return means;
+  for (std::uint32_t f = first;;) {
+    f = facets[f].neighbour[(corner_in(facets[f]) + 2) % 3];
+    if (f == no_facet) return sum / count;
+    add(facets[f], corner_in(facets[f]) + 2);
+  }
 }
 
 }  // namespace
 
 double edge_length(const PointCloud& cloud, const RawFacet& facet, int i) {
-  const auto& a = cloud.points[facet.corner[static_cast<std::size_t>((i + 1) % 3)]];
-  const auto& b = cloud.points[facet.corner[static_cast<std::size_t>((i + 2) % 3)]];
-  return std::hypot(b.x - a.x, b.y - a.y);
+  return std::sqrt(square_of_edge(cloud, facet, static_cast<std::size_t>(i)));
 }
 
 RawFacet from_widest_corner(const PointCloud& cloud, const RawFacet& facet) {
-  const std::array<double, 3> length{edge_length(cloud, facet, 0), edge_length(cloud, facet, 1), edge_length(cloud, facet, 2)};
   RawFacet turned = facet;
-  const auto first = std::max_element(length.begin(), length.end()) - length.begin();
+  std::ptrdiff_t first = 0;
+  double longest = -1;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double square = square_of_edge(cloud, facet, i);
+    const auto is_before = [&](std::size_t j, std::size_t k) {
+      const auto &p = cloud.points[facet.corner[j]], &q = cloud.points[facet.corner[k]];
+      return p.x != q.x ? p.x < q.x : p.y < q.y;
+    };
+    // Of equal ones that of the first corner in (x, y), whatever the facet's order and the points' numbers.
+    if (square > longest || (square == longest && is_before(i, static_cast<std::size_t>(first)))) {
+      longest = square;
+      first = static_cast<std::ptrdiff_t>(i);
+    }
+  }
   std::rotate(turned.corner.begin(), turned.corner.begin() + first, turned.corner.end());
   std::rotate(turned.neighbour.begin(), turned.neighbour.begin() + first, turned.neighbour.end());
   return turned;
@@ -60,7 +81,7 @@ Trimmed trim(const PointCloud& cloud, std::vector<RawFacet> facets, double max_e
     facets[f] = from_widest_corner(cloud, facets[f]);
     const auto& corner = facets[f].corner;
     const bool hole = std::any_of(corner.begin(), corner.end(), [&](std::uint32_t v) { return std::isnan(cloud.points[v].z); });
-    const bool long_edge = !hole && edge_length(cloud, facets[f], 0) > max_edge;
+    const bool long_edge = !hole && square_of_edge(cloud, facets[f], 0) > max_edge * max_edge;
     gone[f] = hole || long_edge;
     trimmed.holes += hole;
     trimmed.long_edges += long_edge;
@@ -77,21 +98,27 @@ Trimmed trim(const PointCloud& cloud, std::vector<RawFacet> facets, double max_e
     const auto& neighbour = facets[f].neighbour;
     if (std::find(neighbour.begin(), neighbour.end(), no_facet) != neighbour.end()) reach(f);
   }
-  const std::vector<float> mean_length = mean_edge_lengths(cloud, facets);
-  const auto is_sliver = [&](const RawFacet& facet) {
+  std::vector<float> mean_lengths(cloud.points.size());  // of those that were asked for
+  const auto mean_length = [&](std::uint32_t facet, std::uint32_t vertex) {
+    float& mean = mean_lengths[vertex];
+    if (mean == 0) mean = static_cast<float>(mean_edge_length(cloud, facets, facet, vertex));
+    return double{mean};
+  };
+  const auto is_sliver = [&](std::uint32_t f) {
+    const RawFacet& facet = facets[f];
     const auto& [v0, v1, v2] = facet.corner;
     const auto &p0 = cloud.points[v0], &p1 = cloud.points[v1], &p2 = cloud.points[v2];
     const double twice_area = (p1.x - p0.x) * (p2.y - p0.y) - (p2.x - p0.x) * (p1.y - p0.y);
     const double circumradius = edge_length(cloud, facet, 0) / (2 * twice_area) * edge_length(cloud, facet, 1) *
                                 edge_length(cloud, facet, 2);
-    const double mean = (double{mean_length[v0]} + mean_length[v1] + mean_length[v2]) / 3;
+    const double mean = (mean_length(f, v0) + mean_length(f, v1) + mean_length(f, v2)) / 3;
     return !(twice_area > 0 && circumradius <= widest_circumradius * mean);
   };
   while (!on_rim.empty()) {
     const std::uint32_t f = on_rim.back();
     on_rim.pop_back();
     if (!gone[f]) {
-      if (!is_sliver(facets[f])) continue;
+      if (!is_sliver(f)) continue;
       gone[f] = true;
       ++trimmed.slivers;
     }

@@ -2,11 +2,8 @@
 #include "lib/trace/trace.h"
 
 #include <algorithm>
-#include <atomic>
-#include <system_error>
-#include <thread>
-#include <vector>
 
+#include "lib/numerics/parallel.h"
 #include "lib/trace/kernel.h"
 
 namespace sagitta::trace {
@@ -27,19 +24,8 @@ void trace_block(const scene::Scene& scene, const scene::Wavelength& wavelength,
 
 void trace(const scene::Scene& scene, const scene::Wavelength& wavelength, RayBatch& rays, int thread_count) {
   const std::size_t block_count = (rays.size() + block_size - 1) / block_size;
-  std::atomic<std::size_t> next = 0;
-  const auto work = [&] {
-    for (std::size_t block; (block = next++) < block_count;) trace_block(scene, wavelength, rays, block * block_size);
-  };
-  std::size_t workers = thread_count > 0 ? static_cast<std::size_t>(thread_count) : std::max(1u, std::thread::hardware_concurrency());
-  workers = std::min(workers, (block_count + 3) / 4);  // a thread is worth starting for four blocks or more
-  std::vector<std::jthread> helpers;
-  try {
-    for (std::size_t i = 1; i < workers; ++i) helpers.emplace_back(work);
-  } catch (const std::system_error&) {
-    // The machine gives no more threads: those at hand do the work, with the same results.
-  }
-  work();
+  numerics::share_blocks(block_count, thread_count,
+                         [&] { return [&](std::size_t block) { trace_block(scene, wavelength, rays, block * block_size); }; });
 }
 
 void trace_surface(const scene::Scene& scene, const scene::Wavelength& wavelength, int surface_number, RayBatch& rays) {

@@ -120,6 +120,14 @@ TEST(Triangulate, PeelsExactlyWhereTheCircumradiusExceedsTwiceTheMeanEdge) {
   EXPECT_THAT(told(triangulate(triangle(0.1926))), HasSubstr("1 are slivers of the hull"));
 }
 
+TEST(Triangulate, TakesTheMeanOfAllEdgesAtACorner) {
+  // The same triangle on another one, 200 high, below: at the base's ends meet edges of 2, s = sqrt(1 + t^2) and
+  // L = sqrt(40001), at the top two of s. (1 + t^2)/(2 t) is twice the mean of those means at t = 0.0055013.
+  const auto kite = [](double t) { return triangulate(cloud_of_points({{-1, 0, 0}, {1, 0, 0}, {0, t, 0}, {0, -200, 0}})).mesh->facets.size(); };
+  EXPECT_EQ(kite(0.005507), 2u);
+  EXPECT_EQ(kite(0.005496), 1u);
+}
+
 TEST(Triangulate, KeepsTheDiscInsideTheInnermostRing) {
   // freeform.md: a rule by spacing would remove the apex of ring data.
   const auto mesh = triangulate(cloud_of(polar_rings(24, 180, 5, false), sphere(8))).mesh;
@@ -162,6 +170,43 @@ TEST(Triangulate, GivesTheSameMeshForTheSamePoints) {
     }
     EXPECT_EQ(one->corners, other->corners);
     EXPECT_EQ(one->grid, other->grid);
+  }
+}
+
+struct ByPlace {
+  bool operator()(const std::array<V, 3>& a, const std::array<V, 3>& b) const { return key(a) < key(b); }
+  static std::array<double, 6> key(const std::array<V, 3>& t) { return {t[0].x, t[0].y, t[1].x, t[1].y, t[2].x, t[2].y}; }
+};
+// As triples of places, each from its first corner on.
+std::set<std::array<V, 3>, ByPlace> facets_of(const std::vector<Place2>& places) {
+  const auto mesh = triangulate(cloud_of(places, flat)).mesh;
+  std::set<std::array<V, 3>, ByPlace> facets;
+  for (const auto& [a, b, c] : mesh->corners) facets.insert({mesh->vertices[a], mesh->vertices[b], mesh->vertices[c]});
+  return facets;
+}
+
+// The facets and their first corners are a function of the set of points, be they cocircular: in another order they are
+// the same, and a part of the points has the same ones, away from its own hull. (In the last layout two edges of every
+// facet are the longest.)
+TEST(Triangulate, GivesTheSameFacetsForTheSamePointsInAnyOrderOrPart) {
+  std::vector<Layout> layouts = all_layouts(4000);
+  layouts.push_back({"rows in turn moved by half", {}});
+  for (int j = -20; j < 20; ++j)
+    for (int i = -50; i < 50; ++i) layouts.back().places.push_back({0.0625 * i + 0.03125 * (j % 2), 0.25 * j});
+  for (const Layout& layout : layouts) {
+    std::vector<Place2> places = layout.places;
+    const auto straight = facets_of(places);
+    EXPECT_GT(straight.size(), 7000u);
+    std::shuffle(places.begin(), places.end(), std::mt19937_64(3));
+    EXPECT_EQ(facets_of(places), straight) << layout.name;
+    std::erase_if(places, [](const Place2& p) { return p.x > 2.55 || p.y > 3.1; });
+    int near = 0;
+    for (const auto& facet : facets_of(places)) {
+      if (!std::all_of(facet.begin(), facet.end(), [](const V& v) { return std::abs(v.x) < 1.5 && std::abs(v.y) < 2; })) continue;
+      ++near;
+      EXPECT_TRUE(straight.contains(facet)) << layout.name;
+    }
+    EXPECT_GT(near, 500);
   }
 }
 

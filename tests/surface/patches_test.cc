@@ -25,7 +25,7 @@ struct Smooth {
   std::shared_ptr<const scene::MeshStorage> mesh;
   std::vector<CloughTocherPatch> patches;
 
-  explicit Smooth(const PointCloud& cloud) : mesh(scene::triangulate(cloud).mesh), patches(scene::fit_patches(mesh->mesh)) {}
+  explicit Smooth(const PointCloud& cloud) : mesh(scene::triangulate(cloud).mesh), patches(scene::fit_patches(mesh->mesh).patches) {}
   Facets facets() const { return {&mesh->mesh}; }
   Patches c1() const { return {facets(), patches.data()}; }
 };

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lib/scene/fit_patches.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <numeric>
+
+#include "lib/scene/cubic_fit.h"
+#include "tests/support/point_sets.h"
+
+namespace sagitta::scene {
+namespace {
+
+using namespace sagitta::tests;
+using surface::CloughTocherPatch;
+using V = numerics::Vec3<double>;
+
+double cubic(double x, double y) {
+  return 0.3 + 0.1 * x - 0.2 * y + 0.06 * x * x + 0.01 * x * y + 0.07 * y * y + 0.003 * x * x * x - 0.002 * x * x * y +
+         0.004 * x * y * y - 0.001 * y * y * y;
+}
+
+bool have_same_bits(const CloughTocherPatch& a, const CloughTocherPatch& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+
+TEST(FitPatches, give_the_same_bits_on_any_number_of_threads) {
+  for (const Layout& layout : all_layouts(20000)) {
+    const auto mesh = triangulate(cloud_of(layout.places, sphere(9))).mesh;
+    const PatchFit one = fit_patches(mesh->mesh, 1);
+    for (const int thread_count : {2, 3, 8}) {
+      const PatchFit several = fit_patches(mesh->mesh, thread_count);
+      ASSERT_EQ(one.patches.size(), several.patches.size());
+      EXPECT_TRUE(std::equal(one.patches.begin(), one.patches.end(), several.patches.begin(), have_same_bits)) << layout.name;
+      EXPECT_EQ(one.reaches_rim, several.reaches_rim);
+    }
+  }
+}
+
+// The same mesh with its facets in another order: rings reach the vertices in another order, and other vertices share a
+// vector. (Vertices keep their numbers.)
+TEST(FitPatches, do_not_depend_on_the_order_of_facets) {
+  for (const Layout& layout : all_layouts(3000)) {
+    const auto storage = triangulate(cloud_of(layout.places, sphere(9))).mesh;
+    std::vector<std::uint32_t> moved(storage->facets.size());
+    std::iota(moved.begin(), moved.end(), 0u);
+    std::shuffle(moved.begin(), moved.end(), std::mt19937_64(4));
+    std::vector<surface::Facet> facets(moved.size());
+    for (std::size_t f = 0; f < moved.size(); ++f) {
+      facets[moved[f]] = storage->facets[f];
+      for (std::uint32_t& next : facets[moved[f]].neighbour) next = next == surface::no_facet ? next : moved[next];
+    }
+    surface::Mesh shuffled = storage->mesh;
+    shuffled.facets = facets.data();
+    const PatchFit straight = fit_patches(storage->mesh), other = fit_patches(shuffled);
+    EXPECT_EQ(straight.reaches_rim, other.reaches_rim);
+    int same = 0;
+    for (std::size_t f = 0; f < moved.size(); ++f) same += have_same_bits(straight.patches[f], other.patches[moved[f]]);
+    EXPECT_EQ(same, static_cast<int>(moved.size())) << layout.name;
+  }
+}
+
+// On every layout, also turned (so that narrow neighbourhoods lie aslant), stretched 30 times and far from the origin.
+// Tolerance: the fit's coefficients are right to 1000 eps of the heights around (3), at most 1e-13 of them after the
+// shift's rounding of heights near 20; slopes divide that by the least spacing across, 5e-3.
+TEST(FitPatches, are_exact_for_cubics_on_every_layout) {
+  for (const Layout& layout : all_layouts(5000)) {
+    for (const double turn : {0.0, 0.7}) {
+      std::vector<Place2> places;
+      for (const Place2& p : layout.places) {
+        const double x = p.x / 30, y = p.y;
+        places.push_back({x * std::cos(turn) - y * std::sin(turn), x * std::sin(turn) + y * std::cos(turn)});
+      }
+      const auto storage = triangulate(cloud_of(turn == 0 ? layout.places : places, cubic)).mesh;
+      const PatchFit fit = fit_patches(storage->mesh);
+      int compared = 0;
+      for (std::uint32_t f = 0; f < storage->mesh.facet_count; ++f) {
+        const auto& corner = storage->corners[f];
+        if (fit.reaches_rim[corner[0]] || fit.reaches_rim[corner[1]] || fit.reaches_rim[corner[2]]) continue;
+        ++compared;
+        const auto& p = fit.patches[f];
+        const auto sheet = p.evaluate(p.locate(p.x, p.y));
+        ASSERT_NEAR(sheet.z, cubic(p.x, p.y), 1e-12) << layout.name << ' ' << turn;
+        ASSERT_NEAR(sheet.dz_dx, 0.1 + 0.12 * p.x + 0.01 * p.y + 0.009 * p.x * p.x - 0.004 * p.x * p.y + 0.004 * p.y * p.y, 1e-10)
+            << layout.name << ' ' << turn;
+        ASSERT_NEAR(sheet.dz_dy, -0.2 + 0.01 * p.x + 0.14 * p.y - 0.002 * p.x * p.x + 0.008 * p.x * p.y - 0.003 * p.y * p.y, 1e-10)
+            << layout.name << ' ' << turn;
+      }
+      EXPECT_GT(compared, 4000) << layout.name;
+    }
+  }
+}
+
+// Where all points lie on few lines the polynomial of the degree that they determine is exact.
+TEST(FitPatches, fall_back_to_what_the_points_determine) {
+  const auto quadratic = [](double x, double y) { return 0.1 * x - 0.2 * y + 0.06 * x * x + 0.01 * x * y + 0.07 * y * y; };
+  const auto plane = [](double x, double y) { return 1 + 0.1 * x - 0.2 * y; };
+  const auto check = [](const std::vector<Place2>& places, const Height& height) {
+    const auto storage = triangulate(cloud_of(places, height)).mesh;
+    for (const CloughTocherPatch& p : fit_patches(storage->mesh).patches) {
+      const auto sheet = p.evaluate(p.locate(p.x, p.y));
+      EXPECT_NEAR(sheet.z, height(p.x, p.y), 1e-12);
+    }
+  };
+  std::vector<Place2> three_lines, two_lines;
+  for (int i = 0; i < 400; ++i)
+    for (const double y : {-0.5, 0.1, 0.6}) {
+      three_lines.push_back({0.01 * i, y});
+      if (y > 0) two_lines.push_back({0.01 * i, y});
+    }
+  check(three_lines, quadratic);
+  check(two_lines, plane);
+  check(uniform_random(9, 1, 3), quadratic);
+  check(uniform_random(3, 1, 3), plane);
+}
+
+// A vertex says that its neighbourhood reaches the rim exactly when a vertex of its two rings lies there: on a regular
+// grid, one of the first or last three rows or columns.
+TEST(FitPatches, tell_which_vertices_reach_the_rim) {
+  const auto storage = triangulate(cloud_of(regular_grid(41, 41, 20, 20), sphere(50))).mesh;
+  const PatchFit fit = fit_patches(storage->mesh);
+  int inside = 0;
+  for (std::size_t v = 0; v < storage->vertices.size(); ++v) {
+    const V& p = storage->vertices[v];
+    EXPECT_EQ(fit.reaches_rim[v], std::max(std::abs(p.x), std::abs(p.y)) > 17.5);
+    inside += !fit.reaches_rim[v];
+  }
+  EXPECT_EQ(inside, 35 * 35);
+}
+
+// A patch away from the rim knows nothing of what lies further: other heights there change no bit of it.
+TEST(FitPatches, away_from_the_rim_depend_on_two_rings_alone) {
+  auto cloud = cloud_of(regular_grid(41, 41, 20, 20), sphere(50));
+  const auto before = triangulate(cloud).mesh;
+  for (V& p : cloud.points)
+    if (std::max(std::abs(p.x), std::abs(p.y)) > 9.5) p.z += 1 + 0.1 * p.x;
+  const auto after = triangulate(cloud).mesh;
+  const PatchFit one = fit_patches(before->mesh), other = fit_patches(after->mesh);
+  int same = 0, others = 0;
+  for (std::uint32_t f = 0; f < before->mesh.facet_count; ++f) {
+    const auto& p = one.patches[f];
+    const bool near = std::max(std::abs(p.x), std::abs(p.y)) < 7;
+    (near ? same : others) += have_same_bits(p, other.patches[f]);
+  }
+  EXPECT_EQ(same, 2 * 14 * 14);
+  EXPECT_LT(others, 2 * 20 * 20);
+}
+
+// A lane's bits depend on nothing in the other lane, nor on what was fitted before.
+TEST(CubicFits, lanes_do_not_meet) {
+  const auto points_of = [](int count, std::uint64_t seed) {
+    std::vector<V> points;
+    for (const Place2& p : uniform_random(count, 1, seed)) points.push_back({p.x, p.y, cubic(p.x, p.y) + 0.01 * std::sin(9 * p.x)});
+    return points;
+  };
+  std::vector<std::uint32_t> numbers(40);
+  std::iota(numbers.begin(), numbers.end(), 0u);
+  const auto few = points_of(12, 1), many = points_of(40, 2);
+  CubicFits alone, together;
+  alone.put(0, {}, few.data(), std::span(numbers).first(12));
+  const CubicFit expected = alone.solve()[0];
+  EXPECT_EQ(expected.terms, CubicFit::cubic_terms);
+  together.put(0, {}, many.data(), numbers);
+  together.put(1, {}, few.data(), std::span(numbers).first(12));
+  EXPECT_EQ(together.solve()[1].c, expected.c);
+  together.put(0, {}, few.data(), std::span(numbers).first(12));
+  EXPECT_EQ(together.solve()[0].c, expected.c);
+}
+
+// (3) by hand: on a line nothing is determined; five points determine no cubic; on a circle around V
+// u^3 + u v^2 is a multiple of u.
+TEST(CubicFits, determine_as_many_terms_as_the_points_do) {
+  const auto terms_of = [](const std::vector<Place2>& places) {
+    std::vector<V> points;
+    for (const Place2& p : places) points.push_back({p.x, p.y, cubic(p.x, p.y)});
+    std::vector<std::uint32_t> numbers(points.size());
+    std::iota(numbers.begin(), numbers.end(), 0u);
+    CubicFits fits;
+    fits.put(0, {}, points.data(), numbers);
+    const CubicFit fit = fits.solve()[0];
+    const auto slope = fit.gradient(0.3, 0.4);
+    EXPECT_TRUE(std::isfinite(slope.x) && std::isfinite(slope.y));
+    return fit.terms;
+  };
+  std::vector<Place2> circle, line, axis;
+  for (int i = 0; i < 20; ++i) {
+    circle.push_back({std::cos(0.314 * i), std::sin(0.314 * i)});
+    line.push_back({0.1 * i - 0.77, 0.3 * (0.1 * i - 0.77)});
+    axis.push_back({0, 0.1 * i - 0.77});
+  }
+  EXPECT_EQ(terms_of(uniform_random(20, 1, 3)), 9);
+  EXPECT_EQ(terms_of(uniform_random(8, 1, 3)), 5);
+  EXPECT_EQ(terms_of(uniform_random(4, 1, 3)), 2);
+  EXPECT_EQ(terms_of(circle), 5);
+  EXPECT_EQ(terms_of(line), 0);
+  Uniform u(8);
+  for (int round = 0; round < 100; ++round) {
+    const double slope = u(-10, 10);
+    std::vector<Place2> aslant;
+    for (int i = 0; i < 20; ++i) aslant.push_back({u(-1, 1), 0});
+    for (Place2& p : aslant) p.y = slope * p.x;  // rounded
+    EXPECT_EQ(terms_of(aslant), 0);
+  }
+  EXPECT_EQ(terms_of(axis), 0);
+  EXPECT_EQ(terms_of({}), 0);
+}
+
+}  // namespace
+}  // namespace sagitta::scene

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// Seconds of preparing a point cloud for tracing, of which the Delaunay triangulation is the part that no other program
+// escapes: the whole (repeated points, trimming, mesh, patches of c1) is given as a multiple of it.
+//
+// The points lie over a square, in random places and random order, or on a regular grid, row by row; the heights are a cornea's.
+#include "tools/bench_preparation.h"
+
+#include <benchmark/benchmark.h>
+
+#include <chrono>
+#include <cmath>
+#include <random>
+#include <string>
+
+#include "lib/scene/delaunay.h"
+#include "lib/scene/fit_patches.h"
+#include "lib/scene/triangulate.h"
+#include "lib/surface/conic.h"
+
+namespace sagitta::bench {
+namespace {
+
+prescription::PointCloud cloud_of(int side, bool is_regular) {
+  constexpr double half = 4;
+  std::mt19937_64 engine(20240607);
+  const auto random = [&] { return half * (static_cast<double>(engine() >> 11) * 0x1p-52 - 1); };
+  const surface::Conic cornea{1 / 7.72, -0.26};
+  prescription::PointCloud cloud;
+  for (int j = 0; j < side; ++j)
+    for (int i = 0; i < side; ++i) {
+      const double x = is_regular ? half * (2.0 * i / (side - 1) - 1) : random(), y = is_regular ? half * (2.0 * j / (side - 1) - 1) : random();
+      cloud.points.push_back({x, y, cornea.sag(x, y)});
+    }
+  return cloud;
+}
+
+template <class Work>
+double seconds_of(const Work& work) {
+  const auto before = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
+}
+
+void measure(benchmark::State& state, int side, bool is_regular, int thread_count) {
+  const prescription::PointCloud cloud = cloud_of(side, is_regular);
+  double delaunay = 0, mesh = 0, patches = 0;
+  for (auto _ : state) {
+    delaunay += seconds_of([&] {
+      std::vector<numerics::Vec3<double>> points;
+      points.reserve(cloud.points.size());
+      for (const std::uint32_t i : scene::along_curve(cloud.points)) points.push_back(cloud.points[i]);
+      benchmark::DoNotOptimize(scene::delaunay(points).data());
+    });
+    scene::Triangulation made;
+    const double making = seconds_of([&] { made = scene::triangulate(cloud); });
+    if (!made.mesh) return state.SkipWithError("the points make no mesh");
+    const double fitting = seconds_of([&] { benchmark::DoNotOptimize(scene::fit_patches(made.mesh->mesh, thread_count).patches.data()); });
+    state.SetIterationTime(making + fitting);
+    mesh += making;
+    patches += fitting;
+  }
+  const auto rounds = static_cast<double>(state.iterations());
+  state.counters["delaunay_s"] = delaunay / rounds;
+  state.counters["mesh_s"] = mesh / rounds;  // the triangulation in it
+  state.counters["c1_s"] = patches / rounds;
+  state.counters["whole_per_delaunay"] = (mesh + patches) / delaunay;
+}
+
+}  // namespace
+
+void register_preparation() {
+  for (const int side : {316, 1000})
+    for (const bool is_regular : {false, true})
+      for (const int thread_count : {1, 0}) {
+        const std::string name = std::string("preparation_") + (side == 1000 ? "1e6" : "1e5") + (is_regular ? "/regular" : "/random") +
+                                 (thread_count == 1 ? "/one_thread" : "/all_threads");
+        benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) { measure(state, side, is_regular, thread_count); })
+            ->UseManualTime()->Unit(benchmark::kMillisecond);
+      }
+}
+
+}  // namespace sagitta::bench
