@@ -104,8 +104,8 @@ void refuse_cliffs(const PointCloud& cloud, const std::vector<RawFacet>& facets,
     const auto [first, second] = std::minmax({corner(shortest + 1), corner(shortest + 2)});
     if (!told.emplace(first, second).second) continue;
     findings.error(place_of(cloud, second),
-                   fmt::format("two points so near one place that no slope can be told: the other one is in line {}",
-                               place_of(cloud, first).line),
+                   fmt::format("{}two points so near one place that no slope can be told: the other one is in {}",
+                               before_what(cloud, second), name_of(cloud, first)),
                    "a surface has one height at every (x, y)");
   }
 }

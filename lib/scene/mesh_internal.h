@@ -42,7 +42,10 @@ Trimmed trim(const prescription::PointCloud& cloud, std::vector<RawFacet> facets
 std::shared_ptr<const MeshStorage> build_mesh(const prescription::PointCloud& cloud, std::vector<RawFacet> facets,
                                               prescription::Findings& findings);
 
-// The place of a point in the cloud's file.
+// The place of a point in the cloud's file; the file as a whole where that has no lines. "line 3" or "point 3"; and what a
+// message at that place begins with to tell of which point it speaks, "point 3: " or nothing.
 prescription::Place place_of(const prescription::PointCloud& cloud, std::size_t point);
+std::string name_of(const prescription::PointCloud& cloud, std::size_t point);
+std::string before_what(const prescription::PointCloud& cloud, std::size_t point);
 
 }  // namespace sagitta::scene
