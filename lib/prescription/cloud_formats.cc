@@ -87,10 +87,13 @@ std::string_view trimmed(std::string_view text) {
 
 void split_at_blanks(std::string_view line, std::vector<std::string_view>& fields) {
   fields.clear();
-  for (std::string_view rest = trimmed(line); !rest.empty(); rest = trimmed(rest)) {
-    const std::size_t stop = std::min(rest.find_first_of(" \t"), rest.size());
-    fields.push_back(rest.substr(0, stop));
-    rest.remove_prefix(stop);
+  const auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
+  for (const char *at = line.data(), *end = at + line.size();;) {
+    while (at != end && is_blank(*at)) ++at;
+    if (at == end) return;
+    const char* const begin = at;
+    while (at != end && !is_blank(*at)) ++at;
+    fields.emplace_back(begin, static_cast<std::size_t>(at - begin));
   }
 }
 

@@ -52,6 +52,7 @@ struct Facets {
                     .fallback = 2},
       numerics::Key{.name = "shape_mm", .meaning = "shape parameter of the multiquadric (0: the mean edge length)",
                     .range = numerics::not_negative},
+      numerics::Key{.name = "smoothing_um", .meaning = "rms by which smoothed heights may leave the points", .range = numerics::not_negative},
       numerics::Key{.name = "max_edge_mm", .kind = numerics::ValueKind::number, .meaning = "facets with a longer edge are holes",
                     .range = {0, std::numeric_limits<double>::infinity(), true, true, true}, .fallback = std::numeric_limits<double>::infinity()}};
 
