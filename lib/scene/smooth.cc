@@ -2,6 +2,7 @@
 #include "lib/scene/smooth.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <Eigen/QR>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
@@ -75,14 +76,20 @@ class Roughness {
     const std::vector<std::uint32_t>& around = rings_.vertices();  // the vertex itself is the first
     const auto count = static_cast<Eigen::Index>(around.size() - 1);
     if (count < 5) return false;
-    double scale = 0;
-    const auto from_vertex = [&](Eigen::Index row) { return mesh_.vertices[around[static_cast<std::size_t>(row) + 1]] - mesh_.vertices[vertex]; };
-    for (Eigen::Index row = 0; row < count; ++row) scale = std::max(scale, std::hypot(from_vertex(row).x, from_vertex(row).y));
-    Eigen::Matrix<double, Eigen::Dynamic, 5> used(count, 5);
+    // In the principal axes of the points around, so that neither rings at 45 degrees nor a turn of the whole change what
+    // is determined; (1) is the same in all axes.
+    Eigen::Matrix<double, Eigen::Dynamic, 2> place(count, 2);
     for (Eigen::Index row = 0; row < count; ++row) {
-      const double X = from_vertex(row).x / scale, Y = from_vertex(row).y / scale;
-      used.row(row) << X, Y, X * X, X * Y, Y * Y;
+      const Vec3<double> q = mesh_.vertices[around[static_cast<std::size_t>(row) + 1]] - mesh_.vertices[vertex];
+      place.row(row) << q.x, q.y;
     }
+    const double scale = place.cwiseAbs().maxCoeff();
+    place /= scale;
+    const Eigen::Matrix2d moments = place.transpose() * place;
+    const double turn = 0.5 * std::atan2(2 * moments(0, 1), moments(0, 0) - moments(1, 1));
+    place = place * Eigen::Rotation2Dd(turn).toRotationMatrix();
+    Eigen::Matrix<double, Eigen::Dynamic, 5> used(count, 5);
+    used << place, place.col(0).cwiseAbs2(), place.col(0).cwiseProduct(place.col(1)), place.col(1).cwiseAbs2();
     const Eigen::Array<double, 5, 1> size = used.colwise().norm().cwiseMax(1e-300);
     used = used * size.inverse().matrix().asDiagonal();
     Eigen::ColPivHouseholderQR<Eigen::Matrix<double, Eigen::Dynamic, 5>> qr(used);

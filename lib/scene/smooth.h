@@ -9,7 +9,7 @@
 //
 // On the triangulation the second derivatives at a vertex are linear functionals of the departures there and around it: a
 // quadratic through the vertex, by least squares over its topological rings, one ring, and more until they determine it
-// (the smallest pivot of the scaled matrix above 1e-3 of the largest). The integral is their sum over the vertices, each
+// (the smallest pivot of the scaled matrix, in the principal axes of those points, above 1e-3 of the largest). The integral is their sum over the vertices, each
 // weighted by a third of its facets' area: d^T P d, P sparse. So (1) is the linear system
 //   (1 + lambda P) d = z - b,                                                                                      (3)
 // by sparse Cholesky decomposition. The rms (2) rises with lambda. One decomposition, at lambda0, tells the rms at every
