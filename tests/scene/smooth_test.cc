@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <limits>
 #include <numbers>
 
+#include "lib/prescription/cloud_reader.h"
 #include "lib/scene/fit_patches.h"
 #include "lib/scene/triangulate_smoothed.h"
 #include "lib/surface/patches.h"
@@ -68,17 +71,14 @@ Errors errors_of(const Triangulation& made, const Height& exact, double radius) 
   return {std::sqrt(sums.sag / count), std::sqrt(sums.slope / count)};
 }
 
-// White noise of 0.25 um, that of real topographers, on 24 rings x 180 meridians: with smoothing by as much, sag errors
-// inside 3.5 mm fall at least 3 times and slope errors at least 20 times. A surface that is smooth over l = 1 mm has about
-// 4 l^2 times 68 points per mm^2 in each patch that noise averages over, so 10 times less sag error is what there is to gain
-// in the best case; noise slopes of sigma sqrt(2)/0.05 mm (along the inner rings) become 10 times smaller sags over l: a
-// factor of some hundred. The factors stated leave the rim of the data, and the residual's own bias, their share.
+// White noise of 0.25 um, that of real topographers, on 24 rings x 180 meridians: with smoothing by as much, what README
+// states of the synthetic corneas below holds, 5 times less error of sag and 30 times less of slope.
 TEST(Smoothing, brings_back_the_surface_under_noise) {
   const PointCloud cloud = noisy(cloud_of(polar_rings(24, 180, 4.5, false), cornea), 2.5e-4, 7);
   const Errors before = errors_of(smoothed(cloud, 0).triangulation, cornea, 3.5), after = errors_of(smoothed(cloud, 2.5e-4).triangulation, cornea, 3.5);
   std::printf("[ report   ] sag error %.4f -> %.4f um rms, slope error %.4f -> %.4f mrad rms\n", 1e3 * before.sag, 1e3 * after.sag, 1e3 * before.slope, 1e3 * after.slope);
-  EXPECT_LT(3 * after.sag, before.sag);
-  EXPECT_LT(20 * after.slope, before.slope);
+  EXPECT_LT(5 * after.sag, before.sag);
+  EXPECT_LT(30 * after.slope, before.slope);
 }
 
 // Counted independently: over the points of the surface, smoothed against given.
@@ -228,6 +228,39 @@ TEST(Smoothing, takes_what_is_small_and_what_is_out_of_scale) {
     const auto result = smoothed(cloud, 3e-4 * scale);
     ASSERT_TRUE(result.smoothing) << scale;
     EXPECT_NEAR(result.smoothing->residual_rms / scale, 3e-4, 1e-8) << scale;
+  }
+}
+
+// The synthetic corneas with noise in height and radius, not part of the project: against the clean ones, traced as they
+// are (right to 0.02 um inside 2.5 mm). Smoothed by what the noise amounts to, over the points themselves.
+TEST(Smoothing, brings_back_the_synthetic_corneas) {
+  const char* given = std::getenv("SAGITTA_SHARED");
+  const std::filesystem::path folder = std::filesystem::path(given ? given : SAGITTA_SOURCE_DIR "/../shared") / "data/synthetic";
+  if (!std::filesystem::exists(folder / "normal_clean.csv")) GTEST_SKIP() << "no corneas in " << folder;
+  const auto read = [&](const std::string& name) {
+    prescription::Findings findings;
+    return prescription::read_cloud({(folder / name).string(), "xyz", true}, findings);
+  };
+  for (const std::string name : {"normal", "keratoconus", "postlasik"}) {
+    const auto clean = read(name + "_clean.csv"), measured = read(name + "_noisy.csv");
+    ASSERT_TRUE(clean && measured);
+    const Triangulation exact_mesh = triangulate(*clean);
+    const auto patches = fit_patches(exact_mesh.mesh->mesh);
+    const surface::Patches exact{{&exact_mesh.mesh->mesh}, patches.data()};
+    const auto sag = [&](double x, double y) { return exact.sag(x, y); };
+    double squares = 0;
+    int count = 0;
+    for (const auto& p : measured->points) {
+      const double noise = p.z - exact.sag(p.x, p.y);
+      if (!std::isnan(noise)) squares += noise * noise, ++count;
+    }
+    EXPECT_GT(count, 3900);
+    const double rms = std::sqrt(squares / count);
+    const Errors before = errors_of(smoothed(*measured, 0).triangulation, sag, 2.5), after = errors_of(smoothed(*measured, rms).triangulation, sag, 2.5);
+    std::printf("[ report   ] %s: noise %.3f um rms; sag error %.4f -> %.4f um rms, slope error %.4f -> %.4f mrad rms\n", name.c_str(), 1e3 * rms, 1e3 * before.sag,
+                1e3 * after.sag, 1e3 * before.slope, 1e3 * after.slope);
+    EXPECT_LT(5 * after.sag, before.sag) << name;
+    EXPECT_LT(30 * after.slope, before.slope) << name;
   }
 }
 
