@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -22,7 +21,6 @@ PointCloud with_heights(PointCloud cloud, const surface::Mesh& mesh, const std::
   std::iota(order.begin(), order.end(), 0u);
   std::sort(order.begin(), order.end(), [&](auto a, auto b) { return place_of_vertex(a) < place_of_vertex(b); });
   for (auto& p : cloud.points) {
-    if (std::isnan(p.z)) continue;
     const std::pair place(p.x, p.y);
     const auto found = std::lower_bound(order.begin(), order.end(), place, [&](auto v, const auto& wanted) { return place_of_vertex(v) < wanted; });
     if (found != order.end() && place_of_vertex(*found) == place) p.z = z[*found];
