@@ -51,7 +51,7 @@ prescription::Shape shape_of(const std::string& kind, int point_count) {
   shape.kind = point_count > 0 ? "delaunay" : kind;
   auto& given = shape.parameters;
   given.numbers = {{"radius_mm", radius}, {"conic_constant", conic_constant}, {"normalization_radius_mm", 3},
-                   {"max_edge_mm", std::numeric_limits<double>::infinity()}};
+                   {"smoothing_um", 0}, {"max_edge_mm", std::numeric_limits<double>::infinity()}};
   given.texts = {{"indexing", "osa"}, {"interpolation", kind}};
   // 36 terms of OSA, of the size of a cornea's: falling with the order, signs in turn.
   for (int index = 0; index < 36; ++index) {

@@ -35,4 +35,11 @@ struct CheckOptions {
 };
 int check_command(const CheckOptions& options);
 
+struct ConvertOptions {
+  std::string points, file;
+  std::string format = "xyz";  // one of prescription::cloud_formats()
+  std::string axes = "local";  // or "osa"
+};
+int convert_command(const ConvertOptions& options);
+
 }  // namespace sagitta::tools

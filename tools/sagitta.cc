@@ -7,6 +7,7 @@
 #include <new>
 #include <system_error>
 
+#include "lib/prescription/cloud_reader.h"
 #include "tools/commands.h"
 
 namespace {
@@ -57,6 +58,18 @@ void add_check(CLI::App& app, int& status) {
   command->callback([&status] { status = check_command(options); });
 }
 
+void add_convert(CLI::App& app, int& status) {
+  static ConvertOptions options;
+  CLI::App* command = app.add_subcommand("convert", "Write points in the compact form (binary PLY), which reads at the speed of the disk");
+  command->add_option("POINTS", options.points, "file of the points")->required();
+  command->add_option("-o,--output", options.file, "PLY file to write, for `format: ply` of a prescription")->required();
+  const std::string formats(sagitta::prescription::cloud_formats());
+  command->add_option("--format", options.format, "format of POINTS")->check(CLI::IsMember(CLI::detail::split(formats, '|')))->capture_default_str();
+  command->add_option("--axes", options.axes, "frame of POINTS: local, the surface's own, or osa, x to the examiner's right")
+      ->check(CLI::IsMember({"local", "osa"}))->capture_default_str();
+  command->callback([&status] { status = convert_command(options); });
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -69,6 +82,7 @@ int main(int argc, char** argv) {
   add_trace(app, status);
   add_rays(app, status);
   add_check(app, status);
+  add_convert(app, status);
   try {
     app.parse(argc, argv);
     if (std::fflush(stdout) != 0) throw std::system_error(errno, std::generic_category());

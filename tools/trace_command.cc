@@ -28,6 +28,7 @@ output::Report make_report(const prescription::Model& model, const scene::Compil
   report.wavelengths_nm = model.wavelengths_nm;
   for (const auto& surface : model.surfaces) report.surface_names.push_back(surface.name);
   report.first_order = compiled.first_order;
+  report.smoothing = compiled.smoothing;
   return report;
 }
 

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "lib/output/figure.h"
 #include "lib/output/table.h"
 #include "lib/scene/first_order.h"
+#include "lib/scene/smooth.h"
 
 namespace sagitta::output {
 
@@ -25,6 +27,7 @@ struct Report {
   std::vector<double> wavelengths_nm;
   std::vector<std::string> surface_names;     // [0] of surface 1
   scene::FirstOrder first_order;              // at the primary wavelength
+  std::map<int, scene::Smoothing> smoothing;  // by the number of the surface
   std::vector<analysis::JobResult> results;
 };
 

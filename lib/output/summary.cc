@@ -31,6 +31,19 @@ ordered_json first_order_json(const scene::FirstOrder& paraxial) {
           {"nodal_points_z_mm", {paraxial.front_nodal_point, paraxial.rear_nodal_point}}};
 }
 
+// What smoothing did to the points of each surface that asks for it.
+ordered_json smoothing_json(const Report& report) {
+  ordered_json result = ordered_json::array();
+  for (const auto& [number, smoothing] : report.smoothing)
+    result.push_back({{"surface", number},
+                      {"name", report.surface_names[static_cast<std::size_t>(number - 1)]},
+                      {"requested_um", 1e3 * smoothing.requested},
+                      {"residual_rms_um", 1e3 * smoothing.residual_rms},
+                      {"residual_max_um", 1e3 * smoothing.residual_max},
+                      {"lambda_mm2", smoothing.lambda}});
+  return result;
+}
+
 ordered_json rays_json(const trace::StatusCounts& rays) {
   ordered_json result{{"launched", rays.total()}};
   for (std::size_t i = 0; i < surface::status_names.size(); ++i) result[std::string(surface::status_names[i])] = rays.of[i];
@@ -103,6 +116,7 @@ std::string summary_json(const Report& report) {
                     {"version", report.version},
                     {"first_order", first_order_json(report.first_order)},
                     {"results", ordered_json::array()}};
+  if (!report.smoothing.empty()) json["smoothing"] = smoothing_json(report);
   for (const auto& result : report.results) json["results"].push_back(result_json(report, result));
   return json.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
@@ -133,6 +147,10 @@ std::string summary_text(const Report& report) {
     column("OPD P-V", "waves");
   }
   std::string remarks;
+  for (const auto& [number, smoothing] : report.smoothing)
+    remarks += fmt::format("surface {} {} is smoothed: its heights leave the points by {} um rms, {} um at most\n", number,
+                           report.surface_names[static_cast<std::size_t>(number - 1)], significant(1e3 * smoothing.residual_rms),
+                           significant(1e3 * smoothing.residual_max));
   for (const auto& result : report.results) {
     const auto& field = report.fields[result.field];
     const std::int64_t launched = result.rays.total(), ok = result.rays[Status::ok];

@@ -29,6 +29,7 @@ LineReader::LineReader(const std::string& file) : file_(std::fopen(file.c_str(),
 bool LineReader::fill() {
   std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
   end_ -= begin_;
+  before_ += begin_;
   begin_ = 0;
   if (end_ == buffer_.size()) {
     fault_ = "a line of more than a megabyte: this is no text of points";
@@ -84,6 +85,18 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
+void split_at_blanks(std::string_view line, std::vector<std::string_view>& fields) {
+  fields.clear();
+  const auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
+  for (const char *at = line.data(), *end = at + line.size();;) {
+    while (at != end && is_blank(*at)) ++at;
+    if (at == end) return;
+    const char* const begin = at;
+    while (at != end && !is_blank(*at)) ++at;
+    fields.emplace_back(begin, static_cast<std::size_t>(at - begin));
+  }
+}
+
 std::string quoted(std::string_view text) { return fmt::format("\"{}\"", excerpt(std::string(trimmed(text)))); }
 
 CloudNumber parse_cloud_number(std::string_view field, bool decimal_comma) {
@@ -124,6 +137,12 @@ void CloudErrors::add(Place place, std::string what, std::string hint) {
 
 void CloudErrors::finish() {
   if (count_ > most) findings_.note({file_, 0, 0}, fmt::format("{} more errors in this file", count_ - most));
+}
+
+void Tally::tell(const CloudErrors& errors, Findings& findings, std::string_view what, std::string_view became) const {
+  if (count == 0) return;
+  findings.note(errors.at(first_line),
+                fmt::format("{} {} {}, the first one here: {}", count, count == 1 ? "line" : "lines", what, became));
 }
 
 }  // namespace sagitta::prescription

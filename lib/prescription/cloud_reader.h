@@ -15,11 +15,14 @@ namespace sagitta::prescription {
 struct CloudRequest {
   std::string file;        // found already
   std::string format;      // one of cloud_formats()
-  bool osa_axes = false;   // `axes: osa` (xyz only): x to the examiner's right, so x is negated
+  bool osa_axes = false;   // `axes: osa`, where has_given_axes(format): x to the examiner's right, so x is negated
 };
 
-// "xyz|cso": the choices of the key `format`.
+// "xyz|cso|...": the choices of the key `format`.
 std::string_view cloud_formats();
+
+// Whether the user says in which frame such points are; the other formats have a frame of their own, which is converted.
+bool has_given_axes(std::string_view format);
 
 // Null, and errors at places in the cloud's file, where it cannot be read. Notes tell what was left out (lines without
 // a place, missing points).

@@ -6,84 +6,23 @@
 // and a line of dashes; then one number a line with a decimal comma: rings x meridians radii in mm, then as many
 // elevations in mm, ring by ring, meridian i at i x 360/meridians degrees.
 //
-// Missing samples have radius and elevation -1 or -1000, written just so; an elevation that happens to be -1.0 mm
-// has its decimals (-1,00000123). A missing sample becomes an explicit hole (z NaN) on its meridian, at the
-// radius interpolated along the ring between its neighbours that have one; a ring without any leaves nothing. Rings
-// are not round, so that place may lie inside a measured sample of an inner ring, and the hole would take good data
-// with it: then it goes between the measured samples of its meridian, and beyond the last one it leaves nothing.
-//
-// The file has z out of the eye and x to the examiner's right; the contract's eye frame has z into the eye and x to
-// the examiner's left: (x, z) -> (-x, -z).
+// Missing samples have radius and elevation -1 or -1000; what becomes of them, and of the file's frame, is told in
+// ring_places_internal.h.
 #include <fmt/format.h>
 
 #include <charconv>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 
 #include "lib/prescription/cloud_formats_internal.h"
+#include "lib/prescription/ring_places_internal.h"
 
 namespace sagitta::prescription {
 namespace {
 
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 constexpr int most_rings = 10000, most_meridians = 100000;
-
-struct Direction {
-  double cosine, sine;
-};
-
-// The meridian i of `count`, at i x 360/count degrees: exact at multiples of 90 degrees, and symmetric about them.
-Direction meridian(std::size_t i, std::size_t count) {
-  const std::size_t quadrant = 4 * i / count;
-  const double angle = std::numbers::pi / 2 * static_cast<double>(4 * i - quadrant * count) / static_cast<double>(count);
-  const double c = std::cos(angle), s = std::sin(angle);
-  switch (quadrant) {
-    case 0: return {c, s};
-    case 1: return {-s, c};
-    case 2: return {-c, -s};
-    default: return {s, -c};
-  }
-}
-
-// Fills what is missing on one ring, linearly between the nearest neighbours that are there, around the ring.
-void interpolate_around(std::vector<double>& radius, std::size_t begin, std::size_t count) {
-  const auto at = [&](std::size_t i) -> double& { return radius[begin + i % count]; };
-  std::size_t first = 0;
-  while (first < count && std::isnan(at(first))) ++first;
-  if (first == count) return;
-  for (std::size_t left = first; left < first + count;) {
-    std::size_t right = left + 1;
-    while (std::isnan(at(right))) ++right;
-    const double from = at(left), to = at(right), steps = static_cast<double>(right - left);
-    for (std::size_t i = left + 1; i < right; ++i) at(i) = from + (to - from) * (static_cast<double>(i - left) / steps);
-    left = right;
-  }
-}
-
-// The places of the missing samples (see above), NaN for those that leave nothing; the measured ones as they are.
-std::vector<double> places_of(const std::vector<double>& measured, std::size_t rings, std::size_t meridians) {
-  std::vector<double> placed = measured;
-  for (std::size_t ring = 0; ring < rings; ++ring) interpolate_around(placed, ring * meridians, meridians);
-  for (std::size_t i = 0; i < meridians; ++i) {
-    double inner = 0;
-    for (std::size_t ring = 0; ring < rings; ++ring) {
-      const auto is_missing = [&](std::size_t k) { return k < rings && std::isnan(measured[k * meridians + i]); };
-      std::size_t end = ring;
-      while (is_missing(end)) ++end;
-      const double outer = end < rings ? measured[end * meridians + i] : std::numeric_limits<double>::infinity();
-      for (const std::size_t first = ring; ring < end; ++ring) {
-        double& r = placed[ring * meridians + i];
-        if (std::isnan(r) || (r > inner && r < outer)) continue;
-        const double share = static_cast<double>(ring - first + 1) / static_cast<double>(end - first + 1);
-        r = end < rings ? inner + (outer - inner) * share : missing;
-      }
-      inner = outer;
-    }
-  }
-  return placed;
-}
 
 class CsoReader {
  public:
@@ -92,11 +31,7 @@ class CsoReader {
 
   std::shared_ptr<const PointCloud> read() {
     std::shared_ptr<const PointCloud> cloud;
-    if (request_.osa_axes) {
-      errors_.add(errors_.at(0), "axes: osa is for xyz points", "cso files have a frame of their own, which is converted");
-    } else if (read_header() && read_samples() && errors_.none()) {
-      cloud = points();
-    }
+    if (read_header() && read_samples() && errors_.none()) cloud = points();
     errors_.finish();
     return cloud;
   }
@@ -154,7 +89,7 @@ class CsoReader {
     first_line_ = lines_.number() + 1;
     while (lines_.next()) {
       const std::string_view text = trimmed(lines_.line());
-      const std::size_t read = radius_.size() + elevation_.size();
+      const std::size_t read = samples_.size() + elevation_.size();
       if (text.empty()) {
         blank_line_ = blank_line_ ? blank_line_ : lines_.number();
         continue;
@@ -171,7 +106,7 @@ class CsoReader {
       read < sample_count ? read_radius(text) : read_elevation(text);
     }
     if (told_a_fault()) return false;
-    if (const std::size_t read = radius_.size() + elevation_.size(); read < 2 * sample_count) {
+    if (const std::size_t read = samples_.size() + elevation_.size(); read < 2 * sample_count) {
       errors_.add(errors_.at(lines_.number()),
                   fmt::format("the file ends after {} numbers of {}", read, announced()));
     }
@@ -182,20 +117,19 @@ class CsoReader {
     return fmt::format("2 x {} rings x {} meridians = {}", ring_count_, meridian_count_, 2 * ring_count_ * meridian_count_);
   }
 
-  static bool is_marker(std::string_view text) { return text == "-1" || text == "-1000"; }
-
   void read_radius(std::string_view text) {
-    const double r = is_marker(text) ? missing : number(text, "radius");
+    const double r = is_missing_marker(text) ? missing : number(text, "radius");
     if (r < 0) {
       errors_.add(errors_.at(lines_.number()), fmt::format("the radius is negative: {}", quoted(text)),
                   "a missing sample is -1 or -1000");
     }
-    radius_.push_back(r);
+    const std::size_t ring = samples_.size() / meridian_count_, i = samples_.size() % meridian_count_;
+    samples_.push_back({static_cast<double>(ring), static_cast<double>(i) * 360 / static_cast<double>(meridian_count_), r});
   }
 
   void read_elevation(std::string_view text) {
-    const bool has_place = !std::isnan(radius_[elevation_.size()]);
-    const double z = is_marker(text) ? missing : number(text, "elevation");
+    const bool has_place = !std::isnan(samples_[elevation_.size()].radius);
+    const double z = is_missing_marker(text) ? missing : number(text, "elevation");
     elevation_.push_back(has_place ? z : missing);
   }
 
@@ -211,20 +145,19 @@ class CsoReader {
     auto cloud = std::make_shared<PointCloud>();
     cloud->file = request_.file;
     std::size_t missing_count = 0;
-    const std::vector<double> radius = places_of(radius_, ring_count_, meridian_count_);
+    const std::vector<double> radius = places_of(samples_);
     for (std::size_t k = 0; k < radius.size(); ++k) {
       if (std::isnan(elevation_[k])) ++missing_count;
       if (std::isnan(radius[k])) continue;
-      const Direction direction = meridian(k % meridian_count_, meridian_count_);
-      cloud->points.push_back({-radius[k] * direction.cosine, radius[k] * direction.sine, -elevation_[k]});
-      cloud->lines.push_back(first_line_ + static_cast<std::uint32_t>(radius_.size() + k));
+      cloud->points.push_back(in_eye_frame(radius[k], samples_[k].meridian_deg, elevation_[k]));
+      cloud->lines.push_back(first_line_ + static_cast<std::uint32_t>(samples_.size() + k));
     }
-    if (missing_count == radius_.size()) {
+    if (missing_count == samples_.size()) {
       errors_.add(errors_.at(0), "every sample is missing");
       return nullptr;
     }
     if (missing_count > 0) {
-      findings_.note(errors_.at(0), fmt::format("{} of {} samples are missing: holes", missing_count, radius_.size()));
+      findings_.note(errors_.at(0), fmt::format("{} of {} samples are missing: holes", missing_count, samples_.size()));
     }
     return cloud;
   }
@@ -241,7 +174,8 @@ class CsoReader {
 
   std::size_t ring_count_ = 0, meridian_count_ = 0;
   std::uint32_t first_line_ = 0, blank_line_ = 0;
-  std::vector<double> radius_, elevation_;  // NaN: missing
+  std::vector<RingSample> samples_;
+  std::vector<double> elevation_;  // NaN: missing
 };
 
 }  // namespace

@@ -15,7 +15,8 @@ namespace sagitta::prescription {
 struct PointCloud {
   std::string file;
   std::vector<numerics::Vec3<double>> points;  // z NaN: an explicit hole at (x, y)
-  std::vector<std::uint32_t> lines;            // the line of each point in the file (of its z for cso)
+  std::vector<std::uint32_t> lines;            // the line of each point in the file (of its z for cso); empty: 1, 2, 3, ...
+  bool has_lines = true;                       // false: the file is no text, and `lines` counts its points
 };
 
 }  // namespace sagitta::prescription

@@ -60,7 +60,7 @@ std::shared_ptr<const PointCloud> read_points(const std::string& key, const std:
     return nullptr;
   const Place& place = parameters.places.find(key)->second;
   const bool osa_axes = axes->second == "osa";
-  if (osa_axes && format->second != "xyz") {
+  if (osa_axes && !has_given_axes(format->second)) {
     findings.error(parameters.places.find("axes")->second,
                    fmt::format("axes must be local for the format {}, not 'osa'", format->second),
                    "the format itself tells its axes");

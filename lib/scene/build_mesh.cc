@@ -101,12 +101,12 @@ void refuse_cliffs(const PointCloud& cloud, const std::vector<RawFacet>& facets,
     const auto length = [&](int i) { return edge_length(cloud, facets[f], i); };
     const int shortest = length(0) < length(1) ? (length(0) < length(2) ? 0 : 2) : (length(1) < length(2) ? 1 : 2);
     const auto corner = [&](int i) { return facets[f].corner[static_cast<std::size_t>(i % 3)]; };
-    const auto by_line = [&](std::uint32_t a, std::uint32_t b) { return place_of(cloud, a).line < place_of(cloud, b).line; };
+    const auto by_line = [&](std::uint32_t a, std::uint32_t b) { return cloud.lines[a] < cloud.lines[b]; };
     const auto [first, second] = std::minmax({corner(shortest + 1), corner(shortest + 2)}, by_line);
     if (!told.emplace(first, second).second) continue;
     findings.error(place_of(cloud, second),
-                   fmt::format("two points so near one place that no slope can be told: the other one is in line {}",
-                               place_of(cloud, first).line),
+                   fmt::format("{}two points so near one place that no slope can be told: the other one is in {}",
+                               before_what(cloud, second), name_of(cloud, first)),
                    "a surface has one height at every (x, y)");
   }
 }

@@ -10,7 +10,7 @@
 #include "lib/scene/cloud_fit.h"
 #include "lib/scene/fit_patches.h"
 #include "lib/scene/fit_radial.h"
-#include "lib/scene/triangulate.h"
+#include "lib/scene/triangulate_smoothed.h"
 
 namespace sagitta::scene {
 namespace {
@@ -62,18 +62,27 @@ surface::Facets* facets_of(surface::Shape& shape) {
       shape);
 }
 
-// A shape made of points. Its vertex curvature follows when the beam is known (fit_curvatures).
-surface::Shape compile_cloud(const prescription::Shape& given, numerics::Arena& arena, Findings& findings) {
-  Triangulation made = triangulate(*given.cloud, given.parameters.number("max_edge_mm"));
+// A shape made of points. Its vertex curvature follows when the beam is known (set_vertex_curvatures).
+struct CompiledCloud {
+  surface::Shape shape;
+  std::shared_ptr<const prescription::PointCloud> cloud;  // with the heights that are traced
+  std::optional<Smoothing> smoothing;
+};
+CompiledCloud compile_cloud(const prescription::Shape& given, numerics::Arena& arena, Findings& findings) {
+  const auto& parameters = given.parameters;
+  auto [made, cloud, smoothing] = triangulate_smoothed(given.cloud, parameters.number("max_edge_mm"), parameters.number("smoothing_um") / 1000);
   for (const auto& finding : made.findings.all()) findings.add(finding);
   if (!made.findings.all().empty()) findings.note(given.place, "named here");
   if (!made.mesh) return {};
-  return interpolate(surface::Facets{&arena.keep_shared(made.mesh).mesh}, given.parameters, arena);
+  if (smoothing)
+    findings.note(given.place, fmt::format("smoothed: the heights leave the points by {:.4g} um rms, {:.4g} um at most{}", 1000 * smoothing->residual_rms,
+                                           1000 * smoothing->residual_max, std::isfinite(smoothing->lambda) ? "" : ": the best-fit sphere and plane, "
+                                           "as smooth as can be, for smoothing_um is more than they leave"));
+  return {interpolate(surface::Facets{&arena.keep_shared(made.mesh).mesh}, parameters, arena), std::move(cloud), smoothing};
 }
 
 // A shape from its checked parameters, by the closed list of kinds.
-surface::Shape compile_shape(const prescription::Shape& given, numerics::Arena& arena, Findings& findings) {
-  if (given.cloud) return compile_cloud(given, arena, findings);
+surface::Shape compile_shape(const prescription::Shape& given, numerics::Arena& arena) {
   surface::Shape result;
   surface::for_each_shape_kind([&]<class S>(S) {
     if constexpr (requires { S::from(given.parameters, arena); }) {
@@ -153,17 +162,18 @@ LaunchPupil compile_pupil(const Model& model, const Scene& scene, const FirstOrd
 
 // Vertex curvatures. Those of point clouds are fitted over the beam, and the beam may depend on them (stop_diameter_mm,
 // image_f_number): a first round takes the least beam, the second the beam that follows from it.
-void set_vertex_curvatures(const Model& model, Scene& scene) {
+using Clouds = std::vector<std::shared_ptr<const prescription::PointCloud>>;  // by surface; null for shapes without points
+void set_vertex_curvatures(const Model& model, const Clouds& clouds, Scene& scene) {
   const auto set = [&](auto&& beam_radius) {
     for (int number = 1; number <= scene.surface_count(); ++number) {
       Surface& surface = scene.surfaces[static_cast<std::size_t>(number - 1)];
-      const auto& cloud = model.surfaces[static_cast<std::size_t>(number - 1)].shape.cloud;
+      const auto& cloud = clouds[static_cast<std::size_t>(number - 1)];
       if (cloud) facets_of(surface.shape)->curvature = vertex_curvature(*cloud, beam_radius(number));
       surface.vertex_curvature = std::visit([](const auto& shape) { return shape.vertex_curvature(); }, surface.shape);
     }
   };
   set([](int) { return 0.0; });
-  if (std::none_of(model.surfaces.begin(), model.surfaces.end(), [](const auto& surface) { return surface.shape.cloud; })) return;
+  if (std::none_of(clouds.begin(), clouds.end(), [](const auto& cloud) { return cloud; })) return;
   Findings told_later;
   FirstOrder paraxial = first_order(scene, scene.primary, 1);
   paraxial.entrance_pupil.semi_diameter = compile_pupil(model, scene, paraxial, told_later).semi_diameter;
@@ -185,10 +195,18 @@ CompileResult compile(const Model& model) {
   place_surfaces(model, scene);
   scene.object.z = -model.object.distance_mm;
   scene.fields = compile_fields(model.fields);
+  Clouds clouds(model.surfaces.size());
   for (std::size_t i = 0; i < model.surfaces.size(); ++i) {
     const prescription::Surface& given = model.surfaces[i];
     Surface& surface = scene.surfaces[i];
-    surface.shape = compile_shape(given.shape, scene.arena, findings);
+    if (given.shape.cloud) {
+      CompiledCloud compiled = compile_cloud(given.shape, scene.arena, findings);
+      surface.shape = compiled.shape;
+      clouds[i] = compiled.cloud;
+      if (compiled.smoothing) result.smoothing[static_cast<int>(i) + 1] = *compiled.smoothing;
+    } else {
+      surface.shape = compile_shape(given.shape, scene.arena);
+    }
     surface.mirror = given.is_mirror();
     surface.image = i + 1 == model.surfaces.size();
     surface.semi_diameter = given.semi_diameter_mm;
@@ -197,7 +215,7 @@ CompileResult compile(const Model& model) {
   }
   if (findings.has_errors()) return result;
 
-  set_vertex_curvatures(model, scene);
+  set_vertex_curvatures(model, clouds, scene);
   for (std::size_t i = 0; i < scene.surfaces.size(); ++i)
     if (!std::isfinite(scene.surfaces[i].vertex_curvature))
       findings.error(model.surfaces[i].shape.place, "the surface has no curvature at its vertex, so the system has no first order",

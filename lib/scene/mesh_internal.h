@@ -44,7 +44,10 @@ std::shared_ptr<const MeshStorage> build_mesh(const prescription::PointCloud& pl
 // The grid and the tree of boxes of a mesh whose vertices and facets are there.
 void index_mesh(MeshStorage& storage);
 
-// The place of a point in the cloud's file.
+// The place of a point in the cloud's file; the file as a whole where that has no lines. "line 3" or "point 3"; and what a
+// message at that place begins with to tell of which point it speaks, "point 3: " or nothing.
 prescription::Place place_of(const prescription::PointCloud& cloud, std::size_t point);
+std::string name_of(const prescription::PointCloud& cloud, std::size_t point);
+std::string before_what(const prescription::PointCloud& cloud, std::size_t point);
 
 }  // namespace sagitta::scene

@@ -18,13 +18,17 @@ using prescription::PointCloud;
 constexpr double largest_coordinate = 1e9, smallest_span = 1e-6;  // mm
 constexpr int most_errors = 100;
 
+std::size_t number_of(const PointCloud& cloud, std::size_t point) {
+  return point < cloud.lines.size() ? cloud.lines[point] : point + 1;
+}
+
 bool coordinates_are_legal(const PointCloud& cloud, Findings& findings) {
   const auto legal = [](double v) { return std::abs(v) <= largest_coordinate; };  // false for NaN
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     const auto& p = cloud.points[i];
     if (legal(p.x) && legal(p.y) && (legal(p.z) || std::isnan(p.z))) continue;
     findings.error(place_of(cloud, i),
-                   fmt::format("the point ({:.9g}, {:.9g}, {:.9g}) is beyond +-1e9 mm", p.x, p.y, p.z),
+                   fmt::format("{}the point ({:.9g}, {:.9g}, {:.9g}) is beyond +-1e9 mm", before_what(cloud, i), p.x, p.y, p.z),
                    "coordinates are in mm");
     if (findings.error_count() == most_errors) break;
   }
@@ -47,8 +51,8 @@ PointCloud distinct_places(const PointCloud& cloud, Findings& findings) {
     if (!std::isnan(z) && !std::isnan(z_kept) && z != z_kept) {
       if (findings.error_count() < most_errors) {
         findings.error(place_of(cloud, i),
-                       fmt::format("two heights at one place ({:.9g}, {:.9g}): {:.17g} here and {:.17g} in line {}", points[i].x,
-                                   points[i].y, z, z_kept, place_of(cloud, kept).line),
+                       fmt::format("{}two heights at one place ({:.9g}, {:.9g}): {:.17g} here and {:.17g} in {}", before_what(cloud, i),
+                                   points[i].x, points[i].y, z, z_kept, name_of(cloud, kept)),
                        "a surface has one height at every (x, y)");
       }
       continue;
@@ -57,16 +61,17 @@ PointCloud distinct_places(const PointCloud& cloud, Findings& findings) {
     if (std::isnan(z_kept)) kept = i;
   }
   if (repeated > 0 && !findings.has_errors()) {
-    findings.note(place_of(cloud, first_repeated), fmt::format("{} {} another, the first one here: merged", repeated,
-                                                               repeated == 1 ? "point repeats" : "points repeat"));
+    findings.note(place_of(cloud, first_repeated), fmt::format("{}{} {} another, the first one here: merged", before_what(cloud, first_repeated),
+                                                               repeated, repeated == 1 ? "point repeats" : "points repeat"));
   }
   PointCloud places;
   places.file = cloud.file;
+  places.has_lines = cloud.has_lines;
   places.points.reserve(count);
   places.lines.reserve(count);
   for (std::size_t k = 0; k < count; ++k) {
     places.points.push_back(points[order[k]]);
-    places.lines.push_back(static_cast<std::uint32_t>(place_of(cloud, order[k]).line));
+    places.lines.push_back(static_cast<std::uint32_t>(number_of(cloud, order[k])));
   }
   return places;
 }
@@ -92,7 +97,16 @@ bool spread_is_legal(const PointCloud& places, Findings& findings) {
 }  // namespace
 
 prescription::Place place_of(const PointCloud& cloud, std::size_t point) {
-  return {cloud.file, static_cast<int>(point < cloud.lines.size() ? cloud.lines[point] : point + 1), 1};
+  if (!cloud.has_lines) return {cloud.file};
+  return {cloud.file, static_cast<int>(number_of(cloud, point)), 1};
+}
+
+std::string name_of(const PointCloud& cloud, std::size_t point) {
+  return fmt::format("{} {}", cloud.has_lines ? "line" : "point", number_of(cloud, point));
+}
+
+std::string before_what(const PointCloud& cloud, std::size_t point) {
+  return cloud.has_lines ? "" : name_of(cloud, point) + ": ";
 }
 
 Triangulation triangulate(const PointCloud& cloud, double max_edge) {

@@ -4,12 +4,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <limits>
 
-#include "tests/prescription/support.h"
+#include "lib/surface/facets.h"
+#include "tests/prescription/cloud_support.h"
 
 namespace sagitta::prescription {
 namespace {
@@ -20,21 +22,9 @@ using testing::Not;
 using V = numerics::Vec3<double>;
 namespace fs = std::filesystem;
 
-struct Read {
-  std::shared_ptr<const PointCloud> cloud;
-  std::string told;  // all findings, the folder taken off
-};
+using Read = test::CloudRead;
 
-Read read(const std::string& text, const std::string& format = "xyz", bool osa_axes = false) {
-  const test::TemporaryFolder folder;
-  Findings findings;
-  Read result{read_cloud({folder.write("points", text), format, osa_axes}, findings), test::text_of(findings)};
-  for (std::size_t at; (at = result.told.find(folder.path() + "/")) != std::string::npos;) {
-    result.told.erase(at, folder.path().size() + 1);
-  }
-  EXPECT_EQ(result.cloud == nullptr, findings.has_errors()) << result.told;
-  return result;
-}
+Read read(const std::string& text, const std::string& format = "xyz", bool osa_axes = false) { return test::read_points(text, format, osa_axes); }
 
 std::vector<V> points(const std::string& text) {
   const Read result = read(text);
@@ -43,8 +33,16 @@ std::vector<V> points(const std::string& text) {
 }
 
 TEST(CloudFormats, AreTheChoicesOfTheKey) {
-  EXPECT_EQ(cloud_formats(), "xyz|cso");
-  EXPECT_THAT(read("0 0 0", "obj").told, HasSubstr("error: \"obj\" is no format of point clouds\n  hint: one of xyz|cso"));
+  const auto& keys = surface::Facets::keys;
+  const auto format = std::find_if(keys.begin(), keys.end(), [](const auto& key) { return key.name == "format"; });
+  ASSERT_NE(format, keys.end());
+  EXPECT_EQ(cloud_formats(), format->choices);
+  EXPECT_THAT(read("0 0 0", "obj").told, HasSubstr("error: \"obj\" is no format of point clouds\n  hint: one of xyz|cso|polar|ply"));
+}
+
+TEST(CloudFormats, SayWhetherTheUserGivesTheirAxes) {
+  for (const auto& [format, given] : {std::pair{"xyz", true}, {"ply", true}, {"cso", false}, {"polar", false}, {"obj", false}})
+    EXPECT_EQ(has_given_axes(format), given) << format;
 }
 
 TEST(Xyz, IsSeparatedByCommaSemicolonTabOrBlanks) {
@@ -231,7 +229,6 @@ TEST(Cso, RefusesWhatIsNoElevationExport) {
               AllOf(HasSubstr("points:9:1: error: the radius is no number: \"1,5,5\""), HasSubstr("points:10:1: error: the radius is negative"),
                     HasSubstr("points:11:1"), HasSubstr("points:16:1: error: the radius is outside the range")));
   EXPECT_THAT(told(cso(radii, "nan\r\n" + elevations)), HasSubstr("points:17:1: error: the elevation is no number: \"nan\""));
-  EXPECT_THAT(read(cso(radii, elevations), "cso", true).told, HasSubstr("error: axes: osa is for xyz points"));
 }
 
 // Real exports, not part of the project: checked where they are at hand.

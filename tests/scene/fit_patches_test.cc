@@ -46,12 +46,15 @@ TEST(FitPatches, do_not_depend_on_the_order_of_facets) {
     std::iota(moved.begin(), moved.end(), 0u);
     std::shuffle(moved.begin(), moved.end(), std::mt19937_64(4));
     std::vector<surface::Facet> facets(moved.size());
+    std::vector<surface::Corners> corners(moved.size());
     for (std::size_t f = 0; f < moved.size(); ++f) {
       facets[moved[f]] = storage->facets[f];
+      corners[moved[f]] = storage->corners[f];
       for (std::uint32_t& next : facets[moved[f]].neighbour) next = next == surface::no_facet ? next : moved[next];
     }
     surface::Mesh shuffled = storage->mesh;
     shuffled.facets = facets.data();
+    shuffled.corners = corners.data();
     const PatchFit straight = fit_patches(storage->mesh), other = fit_patches(shuffled);
     EXPECT_EQ(straight.reaches_rim, other.reaches_rim);
     int same = 0;

@@ -317,5 +317,21 @@ TEST(Triangulate, EndsInAnErrorOrInASoundMeshForAnySmallCloud) {
   EXPECT_GT(hits, 0.99 * rays);
 }
 
+// Files without lines (binary PLY): the place is the file, the point is named by its number.
+TEST(Triangulate, NamesPointsByNumberWhereTheFileHasNoLines) {
+  prescription::PointCloud cloud{.file = "points.ply", .points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 2}, {0, 0, 0}}, .lines = {}, .has_lines = false};
+  const auto first_of = [&] { return format(triangulate(cloud).findings.all().front()); };
+  EXPECT_EQ(first_of(), "points.ply:1:1: error: point 4: two heights at one place (1, 0): 2 here and 0 in point 2\n  hint: a surface has one height at every (x, y)");
+  cloud.lines = {1, 3, 4, 7, 9};  // the second vertex of the file, and others, had no place
+  EXPECT_EQ(first_of(), "points.ply:1:1: error: point 7: two heights at one place (1, 0): 2 here and 0 in point 3\n  hint: a surface has one height at every (x, y)");
+  cloud.points[3] = {1 + 1e-13, 0, 2};
+  EXPECT_EQ(format(triangulate(cloud).findings.all().at(1)),
+            "points.ply:1:1: error: point 7: two points so near one place that no slope can be told: the other one is in point 3\n  hint: a surface has one height at every (x, y)");
+  cloud.points[3] = {1, 1, 0};
+  EXPECT_EQ(first_of(), "points.ply:1:1: note: point 9: 1 point repeats another, the first one here: merged");
+  cloud.points[1].x = 2e9;
+  EXPECT_EQ(first_of(), "points.ply:1:1: error: point 3: the point (2e+09, 0, 0) is beyond +-1e9 mm\n  hint: coordinates are in mm");
+}
+
 }  // namespace
 }  // namespace sagitta::scene
