@@ -141,19 +141,42 @@ Aim aim(const Mesh& mesh, Uniform& u) {
   return {target - norm(b - a) * u(-10, 10) * d, d};
 }
 
-// Every answer is a status; a hit has finite numbers, lies on the line, and at its (x, y) on the surface, where the
-// surface can be asked without ambiguity: `may_jump` for radial functions, whose hits may lie on a facet's continuation.
+// How far (x, y, z) is off the surface, in parts of what rounding allows: positions are known to 2.3e-16 of the largest
+// coordinate that took part (`size`), which the slope turns into height; the iterations end within 64 roundings of the
+// terms (departure.h), and 16 times that leaves room for terms of a patch that are larger than their sum.
+constexpr double rounding = 1024 * 2.3e-16;
+double off(double z, double slope_x, double slope_y, const Crossing<double>& met, double size) {
+  const double steepness = 1 + std::abs(slope_x) + std::abs(slope_y) + std::abs(met.normal.x) + std::abs(met.normal.y);
+  return std::abs(met.point.z - z) / (rounding * size * steepness);
+}
 template <class Shape>
-void send_rays(const Shape& shape, const Mesh& mesh, std::uint64_t seed, bool may_jump, Tally& tally) {
+double off_surface(const Shape& shape, const Crossing<double>& met, double size) {
+  const double x = met.point.x, y = met.point.y;
+  if constexpr (requires { shape.height_of(0u, x, y); }) {
+    // The interpolants of radial functions jump between facets, and a ray that passes between two sheets takes the
+    // continuation of one: the hit lies on that of some facet. Their terms may be far larger than their sum.
+    double least = std::numeric_limits<double>::infinity();
+    for (std::uint32_t facet = 0; facet < shape.facets.mesh->facet_count; ++facet) {
+      const auto h = shape.height_of(facet, x, y);
+      least = std::min(least, off(h.z, h.dz_dx, h.dz_dy, met, size + h.magnitude));
+    }
+    return least;
+  } else {
+    const double z = shape.sag(x, y);
+    const auto slope = shape.gradient(x, y);
+    return std::isfinite(z) ? off(z, slope.x, slope.y, met, size) : 0;  // else a rounding beyond the rim
+  }
+}
+
+// Every answer is a status; a hit has finite numbers, lies on its ray, and on the surface.
+template <class Shape>
+void send_rays(const Shape& shape, const Mesh& mesh, double extent, std::uint64_t seed, Tally& tally) {
   Uniform u(seed ^ 0x9e3779b97f4a7c15);
-  int i = 0;
-  const auto fault = [&](const std::string& what) {
-    if (++tally.faults <= 4000) ADD_FAILURE() << what << ", cloud of seed " << seed << ", ray " << i;
-  };
   ++tally.surfaces;
-  double extent = 0;
-  for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) extent = std::max(extent, norm(mesh.vertices[v]));
-  for (; i < 4; ++i) {
+  for (int i = 0; i < 4; ++i) {
+    const auto fault = [&](const std::string& what) {
+      if (++tally.faults <= 20) ADD_FAILURE() << what << ": cloud of seed " << seed << ", ray " << i << ", " << typeid(Shape).name();
+    };
     const Aim ray = aim(mesh, u);
     const auto met = shape.meet(ray.start, ray.d);
     ++tally.rays;
@@ -168,31 +191,26 @@ void send_rays(const Shape& shape, const Mesh& mesh, std::uint64_t seed, bool ma
       fault("a hit that is not a number");
       continue;
     }
-    // The point is formed from the line at most a few roundings of its coordinates away from it.
     const double size = std::abs(met.path) + norm(ray.start) + norm(met.point) + extent;
-    if (!(norm(met.point - (ray.start + met.path * ray.d)) <= 1e-14 * size)) fault(fmt::format("a hit {:g} beside its ray of size {:g}", norm(met.point - (ray.start + met.path * ray.d)), size));
-    if (may_jump) continue;
-    const double z = shape.sag(met.point.x, met.point.y);
-    if (!std::isfinite(z)) continue;  // a rounding beyond the rim
-    const auto slope = shape.gradient(met.point.x, met.point.y);
-    // (x, y) is rounded to `size` eps; across it the height changes by the slope; the iteration stops within 64 roundings
-    // of the terms (departure.h).
-    const double steepness = 1 + std::abs(slope.x) + std::abs(slope.y) + std::abs(met.normal.x) + std::abs(met.normal.y);
-    if (!(std::abs(met.point.z - z) <= 128 * 2.3e-16 * size * steepness)) fault(fmt::format("a hit {:g} off the surface, size {:g}, steepness {:g}, along {:g}, {}", met.point.z - z, size, steepness, met.along, typeid(Shape).name()));
+    const double beside = norm(met.point - (ray.start + met.path * ray.d));
+    if (!(beside <= rounding * size)) fault(fmt::format("a hit {:g} beside its ray, size {:g}", beside, size));
+    if (const double times = off_surface(shape, met, size); !(times <= 1)) fault(fmt::format("a hit {:g} times rounding off the surface", times));
   }
 }
 
 template <RadialFunction function>
-void send_rays_to_radial(const Facets& facets, std::uint64_t seed, int rings, Tally& tally) {
+void send_rays_to_radial(const Facets& facets, double extent, std::uint64_t seed, int rings, Tally& tally) {
   const auto fit = scene::fit_radial<function>(*facets.mesh, {.rings = rings});
-  send_rays(RadialPatches<function>{facets, fit.patches.data(), fit.nodes.data(), fit.weights.data(), fit.shape_squared}, *facets.mesh, seed, true, tally);
+  send_rays(RadialPatches<function>{facets, fit.patches.data(), fit.nodes.data(), fit.weights.data(), fit.shape_squared}, *facets.mesh, extent,
+            seed, tally);
 }
 
 void try_cloud(std::uint64_t seed, Tally& tally) {
   seed_at_work = seed;
   alarm(20);
   ++tally.clouds;
-  const scene::Triangulation made = scene::triangulate(cloud_of_seed(seed));
+  const PointCloud cloud = cloud_of_seed(seed);
+  const scene::Triangulation made = scene::triangulate(cloud);
   if (made.findings.has_errors() != !made.mesh) ADD_FAILURE() << "neither a surface nor an error, or both: seed " << seed;
   for (const auto& finding : made.findings.all())
     if (finding.what.empty()) ADD_FAILURE() << "a finding without a text: seed " << seed;
@@ -201,25 +219,29 @@ void try_cloud(std::uint64_t seed, Tally& tally) {
     return;
   }
   const Facets facets{&made.mesh->mesh};
-  send_rays(facets, *facets.mesh, seed, false, tally);
+  // Of the whole cloud: a mesh counts from the cloud's middle, points without a facet included.
+  double extent = 0;
+  for (const auto& p : cloud.points)
+    for (const double v : {p.x, p.y, p.z}) extent = std::isfinite(v) ? std::max(extent, std::abs(v)) : extent;
+  send_rays(facets, *facets.mesh, extent, seed, tally);
   const int rings = static_cast<int>(seed / 4 % 6);
   switch (seed % 4) {
     case 0: {
       const auto patches = scene::fit_patches(*facets.mesh);
-      send_rays(Patches{facets, patches.data()}, *facets.mesh, seed, false, tally);
+      send_rays(Patches{facets, patches.data()}, *facets.mesh, extent, seed, tally);
       break;
     }
-    case 1: send_rays_to_radial<RadialFunction::cubic>(facets, seed, rings, tally); break;
-    case 2: send_rays_to_radial<RadialFunction::thin_plate>(facets, seed, rings, tally); break;
-    default: send_rays_to_radial<RadialFunction::multiquadric>(facets, seed, rings, tally);
+    case 1: send_rays_to_radial<RadialFunction::cubic>(facets, extent, seed, rings, tally); break;
+    case 2: send_rays_to_radial<RadialFunction::thin_plate>(facets, extent, seed, rings, tally); break;
+    default: send_rays_to_radial<RadialFunction::multiquadric>(facets, extent, seed, rings, tally);
   }
 }
 
-class SmallClouds : public testing::TestWithParam<int> {};
+class ManySmallClouds : public testing::TestWithParam<int> {};
 constexpr int parts = 4, clouds_a_part = 250000;
-INSTANTIATE_TEST_SUITE_P(Parts, SmallClouds, testing::Range(0, parts));
+INSTANTIATE_TEST_SUITE_P(Parts, ManySmallClouds, testing::Range(0, parts));
 
-TEST_P(SmallClouds, end_in_a_message_or_in_a_surface) {
+TEST_P(ManySmallClouds, end_in_a_message_or_in_a_surface) {
   std::signal(SIGALRM, tell_seed_and_end);
   Tally tally;
   const auto first = static_cast<std::uint64_t>(GetParam()) * clouds_a_part;
@@ -235,16 +257,15 @@ TEST_P(SmallClouds, end_in_a_message_or_in_a_surface) {
   EXPECT_GT(tally.hits, clouds_a_part / 2);
 }
 
-// SAGITTA_FUZZ_SEED=N: one cloud alone, to look at.
-TEST(SmallCloud, of_the_given_seed_ends_in_a_message_or_in_a_surface) {
-  const char* given = std::getenv("SAGITTA_FUZZ_SEED");
-  if (!given) GTEST_SKIP() << "SAGITTA_FUZZ_SEED is not given";
-  const std::uint64_t seed = std::strtoull(given, nullptr, 10);
-  for (const auto& p : cloud_of_seed(seed).points) std::printf("%.17g %.17g %.17g\n", p.x, p.y, p.z);
-  Tally tally;
+// Seeds that found something: predictions by the base sphere far from all data, which cost the hit its digits (35, 163, 634);
+// hits on slivers, some of them in a plane, far along them (58, 227, 806); a point of z 1e9 without a facet (18080, 34126).
+TEST(SmallClouds, that_once_failed_end_in_a_message_or_in_a_surface) {
   std::signal(SIGALRM, tell_seed_and_end);
-  try_cloud(seed, tally);
+  Tally tally;
+  for (const std::uint64_t seed : {35, 58, 163, 227, 634, 806, 18080, 34126}) try_cloud(seed, tally);
+  alarm(0);
   EXPECT_EQ(tally.faults, 0);
+  EXPECT_EQ(tally.refused, 0);
 }
 
 }  // namespace
