@@ -20,7 +20,7 @@ std::optional<prescription::Model> load_model(const std::string& file) {
 
 std::optional<scene::CompileResult> load_scene(const prescription::Model& model) {
   scene::CompileResult compiled = scene::compile(model);
-  if (!report(compiled.findings)) return std::nullopt;
+  if (!report(prescription::in_order(compiled.findings, model.documents))) return std::nullopt;
   return compiled;
 }
 

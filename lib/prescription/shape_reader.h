@@ -11,7 +11,7 @@
 
 namespace sagitta::prescription {
 
-// `folder` is the folder of the prescription, where the files it names are looked for first.
-Shape read_shape(const ShapeKind& kind, const YamlNode& node, const std::string& folder, Findings& findings);
+// A file that the shape names is looked for first beside the file in which the name stands.
+Shape read_shape(const ShapeKind& kind, const YamlNode& node, Findings& findings);
 
 }  // namespace sagitta::prescription
