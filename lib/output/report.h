@@ -24,6 +24,7 @@ struct Report {
   std::vector<std::array<double, 2>> fields;  // degrees, or mm
   std::vector<double> wavelengths_nm;
   std::vector<std::string> surface_names;     // [0] of surface 1
+  std::vector<int> surfaces_of_flat_facets;   // their numbers: wavefronts behind one are of no use, which is said
   scene::FirstOrder first_order;              // at the primary wavelength
   std::vector<analysis::JobResult> results;
 };
