@@ -35,4 +35,14 @@ struct CheckOptions {
 };
 int check_command(const CheckOptions& options);
 
+struct FitOptions {
+  std::string points, format = "xyz", axes = "local";
+  int terms = 36;
+  double radius_mm = 3;
+  std::string indexing = "osa";
+  std::string fragment;  // FILE.yaml; "": none
+  bool json = false;
+};
+int fit_command(const FitOptions& options);
+
 }  // namespace sagitta::tools

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The program: the command line in, one command out.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <new>
 #include <system_error>
 
+#include "lib/numerics/zernike_basis.h"
+#include "lib/prescription/cloud_reader.h"
 #include "tools/commands.h"
 
 namespace {
@@ -57,6 +60,32 @@ void add_check(CLI::App& app, int& status) {
   command->callback([&status] { status = check_command(options); });
 }
 
+// The words of "a|b|c".
+CLI::IsMember one_of(std::string_view choices) {
+  std::vector<std::string> words;
+  for (; !choices.empty(); choices.remove_prefix(std::min(choices.size(), words.back().size() + 1)))
+    words.emplace_back(choices.substr(0, choices.find('|')));
+  return CLI::IsMember(words);
+}
+
+void add_fit(CLI::App& app, int& status) {
+  static FitOptions options;
+  CLI::App* command = app.add_subcommand("fit", "Fit measured points: best sphere, best conic, a Zernike surface for a prescription");
+  command->add_option("POINTS", options.points, "file of the points")->required();
+  command->add_option("--terms", options.terms, "Zernike terms, from the indexing's first")->check(CLI::Range(1, 1326))->capture_default_str();
+  command->add_option("--radius-mm", options.radius_mm, "normalisation radius; points within it are fitted")
+      ->check(CLI::PositiveNumber)->capture_default_str();
+  command->add_option("--indexing", options.indexing, "osa, noll or fringe")
+      ->check(one_of(sagitta::numerics::zernike_indexings))->capture_default_str();
+  command->add_option("--format", options.format, "format of the points")
+      ->check(one_of(sagitta::prescription::cloud_formats()))->capture_default_str();
+  command->add_option("--axes", options.axes, "local, or osa: x to the examiner's right (xyz)")
+      ->check(one_of("local|osa"))->capture_default_str();
+  command->add_option("-o,--output", options.fragment, "FILE.yaml for the shape; FILE.exr and FILE.png, the residual map, beside it");
+  command->add_flag("--json", options.json, "print the fit as JSON in place of the tables");
+  command->callback([&status] { status = fit_command(options); });
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -69,6 +98,7 @@ int main(int argc, char** argv) {
   add_trace(app, status);
   add_rays(app, status);
   add_check(app, status);
+  add_fit(app, status);
   try {
     app.parse(argc, argv);
     if (std::fflush(stdout) != 0) throw std::system_error(errno, std::generic_category());

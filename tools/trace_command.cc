@@ -11,6 +11,7 @@
 #include "lib/output/report.h"
 #include "tools/commands.h"
 #include "tools/load.h"
+#include "tools/write.h"
 
 namespace sagitta::tools {
 namespace {
@@ -31,18 +32,6 @@ output::Report make_report(const prescription::Model& model, const scene::Compil
   return report;
 }
 
-// Says what could not be written; true if it was.
-bool written(const output::WriteResult& result) {
-  if (!result.ok()) fmt::print(stderr, "sagitta trace: {}\n", result.error);
-  return result.ok();
-}
-
-bool write_image(const std::filesystem::path& base, std::vector<output::ExrPart> parts, const output::Figure& figure) {
-  const output::Raster picture = output::render(figure);
-  parts.insert(parts.begin(), output::preview_part(picture));
-  return written(output::write_exr(base.string() + ".exr", parts)) && written(output::write_png(base.string() + ".png", picture));
-}
-
 }  // namespace
 
 int trace_command(const TraceOptions& options) {
@@ -56,13 +45,8 @@ int trace_command(const TraceOptions& options) {
   const auto compiled = load_scene(*model);
   if (!compiled) return 1;
 
-  std::error_code fault;
   const std::filesystem::path folder(options.folder);
-  std::filesystem::create_directories(folder, fault);
-  if (!std::filesystem::is_directory(folder)) {
-    fmt::print(stderr, "sagitta trace: {}: the output folder cannot be made: {}\n", options.folder, fault.message());
-    return 1;
-  }
+  if (!make_folder("trace", folder)) return 1;
 
   analysis::JobRequest request;
   request.want_spot = wants(options, "spot");
@@ -83,10 +67,10 @@ int trace_command(const TraceOptions& options) {
   }
 
   bool all_written = true;
-  if (request.want_spot) all_written &= write_image(folder / "spot", spot_parts(report), spot_figure(report));
-  if (request.want_wavefront) all_written &= write_image(folder / "wavefront", wavefront_parts(report), wavefront_figure(report));
+  if (request.want_spot) all_written &= write_image("trace", folder / "spot", spot_parts(report), spot_figure(report));
+  if (request.want_wavefront) all_written &= write_image("trace", folder / "wavefront", wavefront_parts(report), wavefront_figure(report));
   const std::string summary = summary_json(report);
-  all_written &= written(output::write_file((folder / "summary.json").string(), summary));
+  all_written &= written("trace", output::write_file((folder / "summary.json").string(), summary));
   fmt::print("{}", options.json ? summary : summary_text(report));
   if (!all_written) return 1;
 

@@ -86,20 +86,19 @@ Terms fit_terms(const Points& points, const surface::Conic& base, const ZernikeS
   return {fit.solve(), singular(0) / singular(singular.size() - 1)};
 }
 
-// Residuals at all points within the circle, their rms and range. The surface is evaluated as it will be traced.
-void set_residuals(ZernikeSurface& result) {
+// Of the residuals at the points. The surface is evaluated as it will be traced.
+void set_rms(ZernikeSurface& result, const Points& points) {
   numerics::Arena arena;
-  const auto shape = surface::Zernike::from(zernike_shape(result).parameters, arena);
+  const auto fitted = surface::Zernike::from(zernike_shape(result).parameters, arena);
   numerics::Sum squares;
   double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (auto& p : result.residual_um.points) {
-    p.z = 1e3 * (p.z - shape.sag(p.x, p.y));
-    if (std::isnan(p.z)) continue;
-    squares.add(p.z * p.z);
-    low = std::min(low, p.z);
-    high = std::max(high, p.z);
+  for (const auto& p : points) {
+    const double residual = 1e3 * (p.z - fitted.sag(p.x, p.y));
+    squares.add(residual * residual);
+    low = std::min(low, residual);
+    high = std::max(high, residual);
   }
-  result.rms_um = std::sqrt(squares.value() / static_cast<double>(result.point_count));
+  result.rms_um = std::sqrt(squares.value() / static_cast<double>(points.size()));
   result.peak_to_valley_um = high - low;
 }
 
@@ -119,7 +118,7 @@ ZernikeSurfaceResult fit_zernike_surface(const prescription::PointCloud& cloud, 
   ZernikeSurface result;
   result.normalization_radius_mm = R;
   result.indexing = request.indexing;
-  result.residual_um.file = cloud.file;
+  result.points.file = cloud.file;
   Points points;
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
@@ -128,8 +127,8 @@ ZernikeSurfaceResult fit_zernike_surface(const prescription::PointCloud& cloud, 
     if (!std::isnan(p.z)) nearest = std::min(nearest, distance);
     if (!(distance <= R * (1 + 1e-12))) continue;  // a ring of radius R is inside, whichever way its points were rounded
     if (std::abs(p.z) > largest_coordinate) return refused(fmt::format("the point ({:.9g}, {:.9g}, {:.9g}) is beyond +-1e9 mm", p.x, p.y, p.z), "coordinates are in mm");
-    result.residual_um.points.push_back(p);
-    if (i < cloud.lines.size()) result.residual_um.lines.push_back(cloud.lines[i]);
+    result.points.points.push_back(p);
+    result.points.lines.push_back(i < cloud.lines.size() ? cloud.lines[i] : static_cast<std::uint32_t>(i + 1));
     if (!std::isnan(p.z)) points.push_back(p);
   }
   result.point_count = points.size();
@@ -156,7 +155,7 @@ ZernikeSurfaceResult fit_zernike_surface(const prescription::PointCloud& cloud, 
   result.condition_number = terms.condition;
   if (!terms.coefficients || !(terms.condition <= worst_condition)) return refused_by_condition(points, request, terms.condition);
   for (const double mm : *terms.coefficients) result.coefficients_um.push_back(1e3 * mm);
-  set_residuals(result);
+  set_rms(result, points);
   return {std::move(result), {}, {}};
 }
 

@@ -53,8 +53,8 @@ struct ZernikeSurface {
   std::vector<double> coefficients_um;  // from the indexing's first index on
   double rms_um = 0, peak_to_valley_um = 0;  // of the residual z - (1) over the points
   double condition_number = 0;
-  std::size_t point_count = 0;           // points used
-  prescription::PointCloud residual_um;  // the points within R in the file's order, z: the residual in um; holes too
+  std::size_t point_count = 0;      // points used
+  prescription::PointCloud points;  // those within R, in the file's order; holes too
 };
 
 struct ZernikeSurfaceResult {
