@@ -30,6 +30,19 @@ struct RaysOptions {
 };
 int rays_command(const RaysOptions& options);
 
+struct CompareOptions {
+  std::vector<std::string> systems;
+  std::string folder;
+  std::string surface, points, format = "xyz", axes = "local";  // variants of one surface, made from points
+  std::vector<std::string> as;                                  // "delaunay", "delaunay:linear", "zernike:36"
+  std::optional<double> radius_mm;
+  std::int64_t ray_count = 10000;
+  std::string pattern = "hexapolar";
+  int thread_count = 0;
+  bool json = false;
+};
+int compare_command(const CompareOptions& options);
+
 struct CheckOptions {
   std::string system;
 };

@@ -10,6 +10,7 @@
 
 #include "lib/numerics/zernike_basis.h"
 #include "lib/prescription/cloud_reader.h"
+#include "tools/cloud_variants.h"
 #include "tools/commands.h"
 
 namespace {
@@ -34,6 +35,32 @@ void add_trace(CLI::App& app, int& status) {
       ->check(CLI::Range(1, 1024));
   command->add_flag("--json", options.json, "print the summary as JSON in place of the table");
   command->callback([&status] { status = trace_command(options); });
+}
+
+void add_compare(CLI::App& app, int& status) {
+  static CompareOptions options;
+  CLI::App* command = app.add_subcommand("compare", "Trace several systems by the rays of the first, and show what differs");
+  command->add_option("SYSTEM", options.systems, "prescriptions (YAML), 2 to 16; with --surface, one")->required()->expected(1, 16);
+  command->add_option("-o,--output", options.folder, "folder for comparison.exr, comparison.png and summary.json")->required();
+  auto* surface = command->add_option("--surface", options.surface, "name of a surface of SYSTEM that is made from points in several ways");
+  auto* with = command->add_option("--with", options.points, "file of the points");
+  auto* as = command->add_option("--as", options.as,
+      "the ways, separated by commas: delaunay (c1), delaunay:INTERPOLATION, zernike:TERMS; the first is the reference")->delimiter(',')->expected(1, 16);
+  auto* format = command->add_option("--format", options.format, "format of the points")
+      ->check(CLI::IsMember(choices_of("format")))->capture_default_str();
+  auto* axes = command->add_option("--axes", options.axes, "osa: x of the points is to the examiner's right")
+      ->check(CLI::IsMember(choices_of("axes")))->capture_default_str();
+  auto* radius = command->add_option("--radius-mm", options.radius_mm, "circle of the Zernike fits (default: what the beam needs)")
+      ->check(CLI::Range(1e-6, 1e6));
+  surface->needs(with)->needs(as);
+  for (CLI::Option* option : {with, as, format, axes, radius}) option->needs(surface);
+  command->add_option("--rays", options.ray_count, "rays per field and wavelength, at least (the exact number: 'launched')")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1000000000}))->capture_default_str();
+  command->add_option("--pattern", options.pattern, "hexapolar, square, random:SEED, fan_x or fan_y")->capture_default_str();
+  command->add_option("--threads", options.thread_count, "threads (default: as many as the machine runs)")
+      ->check(CLI::Range(1, 1024));
+  command->add_flag("--json", options.json, "print the summary as JSON in place of the tables");
+  command->callback([&status] { status = compare_command(options); });
 }
 
 void add_rays(CLI::App& app, int& status) {
@@ -96,6 +123,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   int status = 0;
   add_trace(app, status);
+  add_compare(app, status);
   add_rays(app, status);
   add_check(app, status);
   add_fit(app, status);

@@ -7,9 +7,9 @@
 
 #include "lib/analysis/job.h"
 #include "lib/output/atomic_file.h"
-#include "lib/output/progress.h"
 #include "lib/output/report.h"
 #include "tools/commands.h"
+#include "tools/job_report.h"
 #include "tools/load.h"
 #include "tools/write.h"
 
@@ -18,18 +18,6 @@ namespace {
 
 bool wants(const TraceOptions& options, const char* output) {
   return options.only.empty() || std::find(options.only.begin(), options.only.end(), output) != options.only.end();
-}
-
-output::Report make_report(const prescription::Model& model, const scene::CompileResult& compiled) {
-  output::Report report;
-  report.system = model.name.empty() ? std::filesystem::path(model.file).stem().string() : model.name;
-  report.version = SAGITTA_VERSION;
-  report.fields_are_heights = model.fields.kind == prescription::FieldKind::object_heights_mm;
-  for (const auto& field : model.fields.points) report.fields.push_back({field.x, field.y});
-  report.wavelengths_nm = model.wavelengths_nm;
-  for (const auto& surface : model.surfaces) report.surface_names.push_back(surface.name);
-  report.first_order = compiled.first_order;
-  return report;
 }
 
 }  // namespace
@@ -55,16 +43,7 @@ int trace_command(const TraceOptions& options) {
   request.ray_count = options.ray_count;
   request.thread_count = options.thread_count;
   output::Report report = make_report(*model, *compiled);
-  {
-    constexpr std::uint64_t steps = 1000;
-    output::Progress line("tracing", steps);
-    std::uint64_t shown = 0;
-    report.results = analysis::run_job(*compiled->scene, request, [&](double share) {
-      const auto reached = static_cast<std::uint64_t>(share * steps);
-      line.advance(reached - shown);
-      shown = reached;
-    });
-  }
+  report.results = std::move(run_with_progress({&*compiled->scene, 1}, request).front());
 
   bool all_written = true;
   if (request.want_spot) all_written &= write_image("trace", folder / "spot", spot_parts(report), spot_figure(report));

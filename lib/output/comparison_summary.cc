@@ -45,7 +45,7 @@ Table main_table(const Comparison& comparison) {
   const bool covers = any([](const ComparedSystem& one) { return !one.report.results.front().coverage.empty(); });
   const bool fits = any([](const ComparedSystem& one) { return one.fit.has_value(); });
   const std::string field_unit = first.fields_are_heights ? "mm" : "deg";
-  Table table{{{"field", ""}, {"x", field_unit}, {"y", field_unit}, {"wavelength", "nm"}, {"system", "", true}, {"ok"}, {"lost"}}, {}};
+  Table table{{{"field", ""}, {"x", field_unit}, {"y", field_unit}, {"wavelength", "nm"}, {"system", "", true}, {"ok", ""}, {"lost", ""}}, {}};
   if (covers) table.columns.push_back({"coverage", "%"});
   for (const Column& column : std::initializer_list<Column>{{"RMS radius", "um"}, {"change", "um"}, {"change", "%"}, {"OPD RMS", "waves"},
                                                             {"OPD P-V", "waves"}, {"change RMS", "waves"}, {"change P-V", "waves"}})

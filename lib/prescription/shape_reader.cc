@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "lib/prescription/cloud_reader.h"
 #include "lib/prescription/search_path.h"
 #include "lib/prescription/value_reader.h"
@@ -83,6 +85,22 @@ Shape read_shape(const ShapeKind& kind, const YamlNode& node, Findings& findings
     if (key.kind == ValueKind::file)
       shape.cloud = read_points(std::string(key.name), shape.parameters, findings);
   return shape;
+}
+
+Shape make_shape(std::string_view kind, const std::vector<std::pair<std::string, std::string>>& values, const Place& place,
+                 Findings& findings) {
+  YamlNode node;
+  node.kind = YamlNode::Kind::mapping;
+  node.place = place;
+  for (const auto& [key, text] : values) {
+    auto value = std::make_shared<YamlNode>();
+    value->kind = YamlNode::Kind::scalar;
+    value->place = place;
+    value->text = text;
+    node.entries.push_back({key, place, std::move(value)});
+  }
+  const auto found = std::find_if(shape_kinds().begin(), shape_kinds().end(), [&](const ShapeKind& one) { return one.name == kind; });
+  return read_shape(*found, node, findings);
 }
 
 }  // namespace sagitta::prescription
