@@ -161,6 +161,7 @@ int compare_command(const CompareOptions& options) {
   request.pattern = *pattern;
   request.ray_count = options.ray_count;
   request.thread_count = options.thread_count;
+  request.spot_image_size = 512;  // sheets show the middle of it
   const fs::path folder(options.folder);
   if (!make_folder("compare", folder)) return 1;
   output::Comparison comparison = compare(models, request);

@@ -38,7 +38,7 @@ WavefrontDifference wavefront_difference(const Wavefront& other, const Wavefront
     high = std::max(high, difference);
   }
   const auto count = static_cast<double>(result.in_both);
-  const double mean = sum.value() / count;
+  const double mean = result.mean_waves = sum.value() / count;  // NaN of none
   for (const double difference : result.opd_waves)
     if (std::isfinite(difference)) squares.add((difference - mean) * (difference - mean));
   result.rms_waves = result.in_both > 0 ? std::sqrt(squares.value() / count) : nan;

@@ -26,7 +26,7 @@ struct WavefrontDifference {
   std::vector<double> opd_waves;    // (1), size x size as in the wavefronts; NaN where there is none
   std::vector<std::uint32_t> mask;  // size x size
   std::int64_t in_both = 0, only_in_first = 0, only_in_other = 0;  // samples
-  double rms_waves = 0, peak_to_valley_waves = 0;                  // NaN where no sample is in both
+  double mean_waves = 0, rms_waves = 0, peak_to_valley_waves = 0;  // NaN where no sample is in both
   std::vector<double> zernike_um;   // coefficient by coefficient; empty where one of them has none
 };
 

@@ -25,7 +25,8 @@ ordered_json difference_json(const Report& report, std::size_t i, const analysis
                   {"centroid_shift_mm", difference.spot.centroid_shift}};
   json["wavefront"] = nullptr;
   if (const auto& wavefront = difference.wavefront) {
-    json["wavefront"] = {{"rms_waves", wavefront->rms_waves},
+    json["wavefront"] = {{"mean_waves", wavefront->mean_waves},
+                         {"rms_waves", wavefront->rms_waves},
                          {"peak_to_valley_waves", wavefront->peak_to_valley_waves},
                          {"samples", wavefront->in_both},
                          {"samples_only_in_first", wavefront->only_in_first},
@@ -89,7 +90,7 @@ Table zernike_table(const Comparison& comparison, std::size_t i) {
     term_count = std::max(term_count, columns.back()->size());
   }
   if (columns.empty()) return {};
-  const auto in_um = [](double value) { return fmt::format("{:.4f}", value); };
+  const auto in_um = [](double value) { return fmt::format("{:.4f}", std::round(value * 1e4) / 1e4 + 0.0); };  // -0 is 0
   for (std::size_t j = 0; j < std::min(term_count, highest_shown); ++j) {
     const auto term = numerics::zernike_term(numerics::ZernikeIndexing::osa, static_cast<int>(j));
     std::vector<std::string> row{std::to_string(j), std::to_string(term.n), std::to_string(term.m)};
