@@ -10,6 +10,7 @@
 
 #include "lib/numerics/zernike_basis.h"
 #include "lib/prescription/cloud_reader.h"
+#include "lib/scene/fit_zernike.h"
 #include "tools/commands.h"
 
 namespace {
@@ -72,9 +73,9 @@ void add_fit(CLI::App& app, int& status) {
   static FitOptions options;
   CLI::App* command = app.add_subcommand("fit", "Fit measured points: best sphere, best conic, a Zernike surface for a prescription");
   command->add_option("POINTS", options.points, "file of the points")->required();
-  command->add_option("--terms", options.terms, "Zernike terms, from the indexing's first")->check(CLI::Range(1, 1326))->capture_default_str();
+  command->add_option("--terms", options.terms, "Zernike terms, from the indexing's first")->check(CLI::Range(1, sagitta::scene::most_zernike_terms({})))->capture_default_str();
   command->add_option("--radius-mm", options.radius_mm, "normalisation radius; points within it are fitted")
-      ->check(CLI::PositiveNumber)->capture_default_str();
+      ->check(CLI::Range(1e-6, 1e9))->capture_default_str();
   command->add_option("--indexing", options.indexing, "osa, noll or fringe")
       ->check(one_of(sagitta::numerics::zernike_indexings))->capture_default_str();
   command->add_option("--format", options.format, "format of the points")
