@@ -31,30 +31,24 @@ double data_radius(const prescription::PointCloud& cloud) {
   return radius;
 }
 
-}  // namespace
-
-std::vector<std::string> choices_of(const std::string& key) {
-  std::vector<std::string> choices;
-  for (const auto& kind : prescription::shape_kinds())
-    for (const numerics::Key& one : kind.keys) {
-      if (kind.name != "delaunay" || one.name != key) continue;
-      for (std::string_view rest = one.choices; !rest.empty();) {
-        const std::size_t end = std::min(rest.find('|'), rest.size());
-        choices.emplace_back(rest.substr(0, end));
-        rest.remove_prefix(std::min(end + 1, rest.size()));
-      }
-    }
-  return choices;
+// Of points; the default first.
+std::vector<std::string> interpolations() {
+  const auto& kinds = prescription::shape_kinds();
+  const auto shape = std::find_if(kinds.begin(), kinds.end(), [](const auto& kind) { return kind.name == "delaunay"; });
+  const auto key = std::find_if(shape->keys.begin(), shape->keys.end(), [](const numerics::Key& one) { return one.name == "interpolation"; });
+  return numerics::words_of(key->choices);
 }
+
+}  // namespace
 
 ParsedVariant parse_variant(const std::string& text) {
   const std::size_t colon = std::min(text.find(':'), text.size());
   const std::string kind = text.substr(0, colon), rest = text.substr(std::min(colon + 1, text.size()));
-  const std::vector<std::string> interpolations = choices_of("interpolation");
-  if (text == "delaunay") return {VariantKind{text, interpolations.front()}, {}};
   if (kind == "delaunay") {
-    if (std::find(interpolations.begin(), interpolations.end(), rest) != interpolations.end()) return {VariantKind{text, rest}, {}};
-    return {{}, fmt::format("the interpolations are {}", fmt::join(interpolations, ", "))};
+    const std::vector<std::string> known = interpolations();
+    if (text == kind) return {VariantKind{text, known.front()}, {}};
+    if (std::find(known.begin(), known.end(), rest) != known.end()) return {VariantKind{text, rest}, {}};
+    return {{}, fmt::format("the interpolations are {}", fmt::join(known, ", "))};
   }
   if (kind != "zernike") return {{}, "expected delaunay, delaunay:INTERPOLATION or zernike:TERMS"};
   int terms = 0;

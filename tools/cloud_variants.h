@@ -11,9 +11,6 @@
 
 namespace sagitta::tools {
 
-// The choices of a key of the shape `delaunay`.
-std::vector<std::string> choices_of(const std::string& key);
-
 // "delaunay" (interpolation c1), "delaunay:INTERPOLATION" or "zernike:TERMS".
 struct VariantKind {
   std::string text;           // as given

@@ -13,6 +13,11 @@
 namespace sagitta::tools {
 
 int fit_command(const FitOptions& options) {
+  const scene::ZernikeSurfaceRequest request{options.terms, options.radius_mm, numerics::zernike_indexing(options.indexing)};
+  if (const int most = scene::most_zernike_terms(request.indexing); options.terms > most) {
+    fmt::print(stderr, "sagitta fit: --terms {}: {} has at most {}\n", options.terms, options.indexing, most);
+    return 2;
+  }
   if (options.axes == "osa" && options.format != "xyz") {
     fmt::print(stderr, "sagitta fit: --axes osa: the format {} itself tells its axes\n", options.format);
     return 2;
@@ -26,7 +31,7 @@ int fit_command(const FitOptions& options) {
   prescription::Findings findings;
   const auto cloud = prescription::read_cloud({options.points, options.format, options.axes == "osa"}, findings);
   if (!report(findings) || !cloud) return 1;
-  auto fit = scene::fit_zernike_surface(*cloud, {options.terms, options.radius_mm, numerics::zernike_indexing(options.indexing)});
+  auto fit = scene::fit_zernike_surface(*cloud, request);
   if (!fit.surface) {
     prescription::Findings refusal;
     refusal.error({options.points}, fit.reason, fit.hint);

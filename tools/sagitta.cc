@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // The program: the command line in, one command out.
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <new>
 #include <system_error>
 
+#include "lib/numerics/key.h"
 #include "lib/numerics/zernike_basis.h"
 #include "lib/prescription/cloud_reader.h"
-#include "tools/cloud_variants.h"
+#include "lib/scene/fit_zernike.h"
 #include "tools/commands.h"
 
 namespace {
@@ -19,6 +19,8 @@ using namespace sagitta::tools;
 
 constexpr const char* usage_status = R"(Exit status: 0 done; 1 the input is wrong, or not one ray arrived; 2 wrong usage.
 Results go to standard output or the output folder, messages to standard error.)";
+
+CLI::IsMember one_of(std::string_view choices) { return CLI::IsMember(sagitta::numerics::words_of(choices)); }
 
 void add_trace(CLI::App& app, int& status) {
   static TraceOptions options;
@@ -47,9 +49,9 @@ void add_compare(CLI::App& app, int& status) {
   auto* as = command->add_option("--as", options.as,
       "the ways, separated by commas: delaunay (c1), delaunay:INTERPOLATION, zernike:TERMS; the first is the reference")->delimiter(',')->expected(1, 16);
   auto* format = command->add_option("--format", options.format, "format of the points")
-      ->check(CLI::IsMember(choices_of("format")))->capture_default_str();
+      ->check(one_of(sagitta::prescription::cloud_formats()))->capture_default_str();
   auto* axes = command->add_option("--axes", options.axes, "osa: x of the points is to the examiner's right")
-      ->check(CLI::IsMember(choices_of("axes")))->capture_default_str();
+      ->check(one_of("local|osa"))->capture_default_str();
   auto* radius = command->add_option("--radius-mm", options.radius_mm, "circle of the Zernike fits (default: what the beam needs)")
       ->check(CLI::Range(1e-6, 1e6));
   surface->needs(with)->needs(as);
@@ -87,21 +89,13 @@ void add_check(CLI::App& app, int& status) {
   command->callback([&status] { status = check_command(options); });
 }
 
-// The words of "a|b|c".
-CLI::IsMember one_of(std::string_view choices) {
-  std::vector<std::string> words;
-  for (; !choices.empty(); choices.remove_prefix(std::min(choices.size(), words.back().size() + 1)))
-    words.emplace_back(choices.substr(0, choices.find('|')));
-  return CLI::IsMember(words);
-}
-
 void add_fit(CLI::App& app, int& status) {
   static FitOptions options;
   CLI::App* command = app.add_subcommand("fit", "Fit measured points: best sphere, best conic, a Zernike surface for a prescription");
   command->add_option("POINTS", options.points, "file of the points")->required();
-  command->add_option("--terms", options.terms, "Zernike terms, from the indexing's first")->check(CLI::Range(1, 1326))->capture_default_str();
+  command->add_option("--terms", options.terms, "Zernike terms, from the indexing's first")->check(CLI::Range(1, sagitta::scene::most_zernike_terms({})))->capture_default_str();
   command->add_option("--radius-mm", options.radius_mm, "normalisation radius; points within it are fitted")
-      ->check(CLI::PositiveNumber)->capture_default_str();
+      ->check(CLI::Range(1e-6, 1e9))->capture_default_str();
   command->add_option("--indexing", options.indexing, "osa, noll or fringe")
       ->check(one_of(sagitta::numerics::zernike_indexings))->capture_default_str();
   command->add_option("--format", options.format, "format of the points")

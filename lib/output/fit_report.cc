@@ -53,7 +53,7 @@ std::string fit_text(const FitReport& report) {
     const numerics::ZernikeTerm term = numerics::zernike_term(fit.indexing, index);
     terms.rows.push_back({std::to_string(index++), std::to_string(term.n), std::to_string(term.m), fmt::format("{:.6f}", um)});
   }
-  return fmt::format("{}: {} points within {:g} mm, {:.1f} % of the circle inside the points\nin {}\n\n{}\n"
+  return fmt::format("{}: {} points within {:g} mm, {:.1f} % of the circle inside them\nin {}\n\n{}\n"
                      "peak to valley {} um, condition number {:.4g}, normalisation radius {:g} mm\n\n{}",
                      printable(report.file, 200), fit.point_count, fit.normalization_radius_mm, 100 * report.map.coverage, frame, to_text(fits),
                      micrometres(fit.peak_to_valley_um), fit.condition_number, fit.normalization_radius_mm, to_text(terms));
@@ -101,7 +101,7 @@ std::string fit_fragment(const FitReport& report) {
   const ZernikeSurface& fit = report.surface;
   return fmt::format("# A surface's shape: the best-fit conic of {} with {}, by sagitta {} (sagitta fit).\n"
                      "# {} points within {:g} mm; they differ from it by {:.4g} um RMS, {:.4g} um peak to valley; condition number {:.4g};\n"
-                     "# {:.1f} % of the circle inside the points. In {}.\n{}",
+                     "# {:.1f} % of the circle inside them. In {}.\n{}",
                      printable(report.file, 200), terms_of(fit), report.version, fit.point_count, fit.normalization_radius_mm, fit.rms_um,
                      fit.peak_to_valley_um, fit.condition_number, 100 * report.map.coverage, frame, fit_shape(report));
 }

@@ -22,6 +22,7 @@ using numerics::ZernikeIndexing;
 using Points = std::vector<Vec3<double>>;
 
 constexpr double worst_condition = 1000;
+constexpr double least_reach = 0.8;  // of R
 constexpr double largest_coordinate = 1e9;  // mm, as in scene/triangulate.h
 
 ZernikeSurfaceResult refused(std::string reason, std::string hint) { return {std::nullopt, std::move(reason), std::move(hint)}; }
@@ -30,39 +31,57 @@ constexpr std::string_view name_of(ZernikeIndexing indexing) {
   return indexing == ZernikeIndexing::noll ? "noll" : indexing == ZernikeIndexing::fringe ? "fringe" : "osa";
 }
 
-// The largest angle about the origin, in degrees, between one point and the next.
-double widest_sector_deg(const Points& points) {
+struct Reach {
+  double nearest = 0, farthest = 0;  // distance from the origin, mm
+  std::size_t rings = 0;             // different distances, to 1e-6 of the farthest
+};
+Reach reach_of(const Points& points) {
+  std::vector<double> distances;
+  for (const auto& p : points) distances.push_back(std::hypot(p.x, p.y));
+  std::sort(distances.begin(), distances.end());
+  Reach reach{distances.front(), distances.back(), 1};
+  for (std::size_t i = 1; i < distances.size(); ++i) reach.rings += distances[i] - distances[i - 1] > 1e-6 * reach.farthest;
+  return reach;
+}
+
+// Terms of m = 0, which rings alone tell apart: each needs one.
+std::size_t rings_needed(const ZernikeSurfaceRequest& request) {
+  std::size_t count = 0;
+  for (int j = 0; j < request.terms; ++j)
+    count += numerics::zernike_term(request.indexing, numerics::first_zernike_index(request.indexing) + j).m == 0;
+  return count;
+}
+
+// The largest angle about the origin, in degrees, without a point beyond that distance. There is one.
+double widest_sector_deg(const Points& points, double distance) {
   std::vector<double> angles;
-  for (const auto& p : points) angles.push_back(std::atan2(p.y, p.x));
+  for (const auto& p : points)
+    if (std::hypot(p.x, p.y) >= distance) angles.push_back(std::atan2(p.y, p.x));
   std::sort(angles.begin(), angles.end());
   double widest = angles.front() + 2 * std::numbers::pi - angles.back();
   for (std::size_t i = 1; i < angles.size(); ++i) widest = std::max(widest, angles[i] - angles[i - 1]);
   return widest * 180 / std::numbers::pi;
 }
 
-// Why the points do not tell the terms apart.
-ZernikeSurfaceResult refused_by_condition(const Points& points, const ZernikeSurfaceRequest& request, double condition) {
-  double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
-  for (const auto& p : points) {
-    nearest = std::min(nearest, std::hypot(p.x, p.y));
-    farthest = std::max(farthest, std::hypot(p.x, p.y));
-  }
-  const double R = request.radius_mm, sector = widest_sector_deg(points);
-  const std::string measure = std::isfinite(condition) ? fmt::format("condition number {:.3g}", condition) : "no finite condition number";
-  const std::string head = fmt::format("the {} points within {:g} mm do not tell {} terms apart ({}): ", points.size(), R, request.terms, measure);
-  const auto fewer = [&](const char* else_do) { return request.terms == 1 ? std::string(else_do) : fmt::format("{}, or ask for fewer terms", else_do); };
-  if (nearest >= 0.9 * farthest)
-    return refused(head + fmt::format("they lie on one ring, {:.3g} to {:.3g} mm from the origin", nearest, farthest),
+// Why the points do not tell the terms apart, or not where they reach.
+ZernikeSurfaceResult refused_by(const Points& points, const Reach& reach, const ZernikeSurfaceRequest& request, double condition) {
+  const double R = request.radius_mm, outer = 0.7 * reach.farthest, sector = widest_sector_deg(points, outer);
+  const std::string head = fmt::format("the {} points within {:g} mm do not tell {} {} ", points.size(), R, request.terms, request.terms == 1 ? "term" : "terms") +
+                           (condition > worst_condition ? fmt::format("apart (condition number {:.3g}): ", condition) : "over all of the circle: ");
+  const std::string fewer = ", or ask for fewer terms";
+  if (reach.nearest >= 0.9 * reach.farthest)
+    return refused(head + fmt::format("they lie on one ring, {:.3g} to {:.3g} mm from the origin", reach.nearest, reach.farthest),
                    "a surface needs several rings");
-  if (farthest < 0.9 * R)
-    return refused(head + fmt::format("they do not fill the circle, the outermost lies {:.3g} mm from the origin", farthest),
-                   fewer(fmt::format("take a radius of {:.3g} mm", farthest).c_str()));
-  if (sector > 45)
-    return refused(head + fmt::format("they do not fill the circle, a sector of {:.0f} degrees holds none", sector),
-                   fewer("take a radius within the data"));
-  if (nearest > 0.3 * R)
-    return refused(head + fmt::format("they do not fill the circle, the innermost lies {:.3g} mm from the origin", nearest),
-                   fewer("take points nearer to the origin"));
+  if (const std::size_t needed = rings_needed(request); reach.rings < needed)
+    return refused(head + fmt::format("they lie on {} rings, and {} are needed", reach.rings, needed), "take a larger radius" + fewer);
+  if (reach.farthest < least_reach * R)
+    return refused(head + fmt::format("the outermost lies {:.3g} mm from the origin", reach.farthest),
+                   fmt::format("take a radius of {:.3g} mm or less", reach.farthest));
+  if (sector > 20)
+    return refused(head + fmt::format("beyond {:.3g} mm from the origin a sector of {:.0f} degrees holds none", outer, sector),
+                   "take a radius within the data" + fewer);
+  if (reach.nearest > 0.3 * R)
+    return refused(head + fmt::format("the innermost lies {:.3g} mm from the origin", reach.nearest), "take points nearer to the origin" + fewer);
   return refused(head + "they are too few, or lie on too few rings or lines", "ask for fewer terms");
 }
 
@@ -140,8 +159,9 @@ ZernikeSurfaceResult fit_zernike_surface(const prescription::PointCloud& cloud, 
                                points.size() == 1 ? "is" : "are", request.terms),
                    fmt::format("take a larger radius, or ask for {} terms or fewer", points.size()));
 
+  const Reach reach = reach_of(points);
   const auto base = fit_sphere_and_conic(points);
-  if (!base) return refused_by_condition(points, request, std::numeric_limits<double>::infinity());
+  if (!base) return refused_by(points, reach, request, std::numeric_limits<double>::infinity());
   result.sphere_radius_mm = 1 / base->sphere.conic.curvature;
   result.sphere_vertex_mm = base->sphere.vertex_z;
   result.sphere_rms_um = 1e3 * base->sphere.rms;
@@ -153,7 +173,8 @@ ZernikeSurfaceResult fit_zernike_surface(const prescription::PointCloud& cloud, 
   // The base as it is written into the shape: its curvature comes back from the radius.
   const Terms terms = fit_terms(points, {1 / result.radius_mm, result.conic_constant}, request);
   result.condition_number = terms.condition;
-  if (!terms.coefficients || !(terms.condition <= worst_condition)) return refused_by_condition(points, request, terms.condition);
+  if (!terms.coefficients || !(terms.condition <= worst_condition) || !(reach.farthest >= least_reach * R))
+    return refused_by(points, reach, request, terms.condition);
   for (const double mm : *terms.coefficients) result.coefficients_um.push_back(1e3 * mm);
   set_rms(result, points);
   return {std::move(result), {}, {}};

@@ -17,7 +17,8 @@
 // Condition number: largest over smallest singular value of the matrix of the terms at the points, columns scaled to length
 // 1. 1 to 3 for points all over the circle. An error of the points can be enlarged so much in a single combination of
 // coefficients, so beyond 1000 the terms count as not told apart, and the fit is refused with what is missing: points,
-// rings, the rim, a sector, or else the terms are too many.
+// rings, a sector, the middle, or else the terms are too many. Refused too are points that end before 0.8 R: the terms would
+// be extrapolated.
 //
 // Source: numerics/zernike_basis.h for Z_j; G. Golub and C. Van Loan, Matrix Computations (4th ed., 2013), 5.3.3 (QR) and
 // 5.3.7 (column scaling).
