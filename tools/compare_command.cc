@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "lib/output/atomic_file.h"
 #include "lib/output/comparison.h"
@@ -81,21 +82,20 @@ CompiledSystems compile_all(std::vector<ComparedModel>& models) {
   for (ComparedModel& one : models) {
     const bool is_first = &one == &models.front();
     if (!is_first && !take_rays_of(models.front().model, result.scenes.front().pupil, one.model)) continue;
-    const auto compiled = load_scene(one.model);
+    auto compiled = load_scene(one.model);
     if (!compiled && is_first) break;
     if (!compiled) continue;
     result.reports.push_back(make_report(one.model, *compiled));
     result.reports.back().system = one.name;
-    result.scenes.push_back(*compiled->scene);
+    result.scenes.push_back(*std::move(compiled->scene));
     result.scenes.back().pupil = result.scenes.front().pupil;
   }
   return result;
 }
 
-output::Comparison compare(std::vector<ComparedModel>& models, const analysis::JobRequest& request) {
+output::Comparison compare(const std::vector<ComparedModel>& models, CompiledSystems compiled, const analysis::JobRequest& request) {
   output::Comparison comparison;
-  auto [reports, scenes] = compile_all(models);
-  if (scenes.size() < models.size()) return comparison;
+  auto& [reports, scenes] = compiled;
   const auto results = run_with_progress(scenes, request);
   const std::vector<std::string> slugs = unique_slugs(models);
   for (std::size_t i = 0; i < models.size(); ++i) {
@@ -116,17 +116,19 @@ bool write_all(const fs::path& folder, const output::Comparison& comparison, con
   return written("compare", output::write_file((folder / "summary.json").string(), summary)) && all_written;
 }
 
+constexpr std::size_t most_systems = 16;  // rows of a sheet
+
 bool is_well_used(const CompareOptions& options, std::vector<VariantKind>& kinds) {
   const auto refuse = [](const std::string& what) {
     fmt::print(stderr, "sagitta compare: {}\n", what);
     return false;
   };
+  if (std::max(options.systems.size(), options.as.size()) > most_systems)
+    return refuse(fmt::format("at most {} systems are compared", most_systems));
   if (options.surface.empty())
     return options.systems.size() >= 2 || refuse("two systems or more are compared; with --surface, --with and --as, variants of one");
   if (options.systems.size() > 1) return refuse("--surface takes one system");
   if (options.as.size() < 2) return refuse("--as: give two ways or more, such as delaunay,zernike:36");
-  if (options.axes == "osa" && options.format != "xyz")
-    return refuse(fmt::format("--axes osa: the format {} itself tells its axes", options.format));
   for (const std::string& text : options.as) {
     ParsedVariant parsed = parse_variant(text);
     if (!parsed.kind) return refuse(fmt::format("--as {}: {}", text, parsed.fault));
@@ -138,11 +140,8 @@ bool is_well_used(const CompareOptions& options, std::vector<VariantKind>& kinds
 }  // namespace
 
 int compare_command(const CompareOptions& options) {
-  const auto pattern = trace::parse_pattern(options.pattern);
-  if (!pattern) {
-    fmt::print(stderr, "sagitta compare: --pattern {}: expected hexapolar, square, random:SEED, fan_x or fan_y\n", options.pattern);
-    return 2;
-  }
+  auto request = make_request("compare", options);
+  if (!request) return 2;
   std::vector<VariantKind> kinds;
   if (!is_well_used(options, kinds)) return 2;
 
@@ -157,15 +156,12 @@ int compare_command(const CompareOptions& options) {
   make_names_unique(models);
   if (title.empty()) title = fmt::format("{} systems by the rays of {}", models.size(), models.front().name);
 
-  analysis::JobRequest request;
-  request.pattern = *pattern;
-  request.ray_count = options.ray_count;
-  request.thread_count = options.thread_count;
-  request.spot_image_size = 512;  // sheets show the middle of it
+  request->spot_image_size = 512;  // sheets show the middle of it
+  CompiledSystems compiled = compile_all(models);
+  if (compiled.scenes.size() < models.size()) return 1;
   const fs::path folder(options.folder);
   if (!make_folder("compare", folder)) return 1;
-  output::Comparison comparison = compare(models, request);
-  if (comparison.systems.empty()) return 1;
+  output::Comparison comparison = compare(models, std::move(compiled), *request);
   comparison.title = title;
 
   const std::string summary = summary_json(comparison);

@@ -1,11 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/job_report.h"
 
+#include <fmt/core.h>
+
 #include <filesystem>
 
 #include "lib/output/progress.h"
 
 namespace sagitta::tools {
+
+std::optional<analysis::JobRequest> make_request(const char* command, const JobOptions& options) {
+  const auto pattern = trace::parse_pattern(options.pattern);
+  if (!pattern) {
+    fmt::print(stderr, "sagitta {}: --pattern {}: expected hexapolar, square, random:SEED, fan_x or fan_y\n", command, options.pattern);
+    return std::nullopt;
+  }
+  analysis::JobRequest request;
+  request.pattern = *pattern;
+  request.ray_count = options.ray_count;
+  request.thread_count = options.thread_count;
+  return request;
+}
 
 output::Report make_report(const prescription::Model& model, const scene::CompileResult& compiled) {
   output::Report report;

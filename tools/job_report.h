@@ -2,6 +2,7 @@
 // From compiled systems to their reports: what `trace` and `compare` do alike.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -9,8 +10,12 @@
 #include "lib/output/report.h"
 #include "lib/prescription/model.h"
 #include "lib/scene/compile.h"
+#include "tools/commands.h"
 
 namespace sagitta::tools {
+
+// None, after saying so, where there is no such pattern.
+std::optional<analysis::JobRequest> make_request(const char* command, const JobOptions& options);
 
 // A report without results.
 output::Report make_report(const prescription::Model& model, const scene::CompileResult& compiled);

@@ -22,6 +22,15 @@ Results go to standard output or the output folder, messages to standard error.)
 
 CLI::IsMember one_of(std::string_view choices) { return CLI::IsMember(sagitta::numerics::words_of(choices)); }
 
+void add_job(CLI::App& command, JobOptions& options) {
+  command.add_option("--rays", options.ray_count, "rays per field and wavelength, at least (the exact number: 'launched')")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1000000000}))->capture_default_str();
+  command.add_option("--pattern", options.pattern, "hexapolar, square, random:SEED, fan_x or fan_y")->capture_default_str();
+  command.add_option("--threads", options.thread_count, "threads (default: as many as the machine runs)")
+      ->check(CLI::Range(1, 1024));
+  command.add_flag("--json", options.json, "print the summary as JSON in place of the table");
+}
+
 void add_trace(CLI::App& app, int& status) {
   static TraceOptions options;
   CLI::App* command = app.add_subcommand("trace", "Trace every field and wavelength: spots, wavefronts, pictures, summary");
@@ -30,24 +39,19 @@ void add_trace(CLI::App& app, int& status) {
                       "folder for spot.exr, spot.png, wavefront.exr, wavefront.png and summary.json")->required();
   command->add_option("--only", options.only, "spot, wavefront, or both separated by a comma (default: both)")
       ->delimiter(',')->check(CLI::IsMember({"spot", "wavefront"}));
-  command->add_option("--rays", options.ray_count, "rays per field and wavelength, at least (the exact number: 'launched')")
-      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1000000000}))->capture_default_str();
-  command->add_option("--pattern", options.pattern, "hexapolar, square, random:SEED, fan_x or fan_y")->capture_default_str();
-  command->add_option("--threads", options.thread_count, "threads (default: as many as the machine runs)")
-      ->check(CLI::Range(1, 1024));
-  command->add_flag("--json", options.json, "print the summary as JSON in place of the table");
+  add_job(*command, options);
   command->callback([&status] { status = trace_command(options); });
 }
 
 void add_compare(CLI::App& app, int& status) {
   static CompareOptions options;
   CLI::App* command = app.add_subcommand("compare", "Trace several systems by the rays of the first, and show what differs");
-  command->add_option("SYSTEM", options.systems, "prescriptions (YAML), 2 to 16; with --surface, one")->required()->expected(1, 16);
+  command->add_option("SYSTEM", options.systems, "prescriptions (YAML), 2 to 16; with --surface, one")->required();
   command->add_option("-o,--output", options.folder, "folder for comparison.exr, comparison.png and summary.json")->required();
   auto* surface = command->add_option("--surface", options.surface, "name of a surface of SYSTEM that is made from points in several ways");
   auto* with = command->add_option("--with", options.points, "file of the points");
   auto* as = command->add_option("--as", options.as,
-      "the ways, separated by commas: delaunay (c1), delaunay:INTERPOLATION, zernike:TERMS; the first is the reference")->delimiter(',')->expected(1, 16);
+      "the ways, separated by commas: delaunay (c1), delaunay:INTERPOLATION, zernike:TERMS; the first is the reference")->delimiter(',');
   auto* format = command->add_option("--format", options.format, "format of the points")
       ->check(one_of(sagitta::prescription::cloud_formats()))->capture_default_str();
   auto* axes = command->add_option("--axes", options.axes, "osa: x of the points is to the examiner's right")
@@ -56,12 +60,7 @@ void add_compare(CLI::App& app, int& status) {
       ->check(CLI::Range(1e-6, 1e6));
   surface->needs(with)->needs(as);
   for (CLI::Option* option : {with, as, format, axes, radius}) option->needs(surface);
-  command->add_option("--rays", options.ray_count, "rays per field and wavelength, at least (the exact number: 'launched')")
-      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1000000000}))->capture_default_str();
-  command->add_option("--pattern", options.pattern, "hexapolar, square, random:SEED, fan_x or fan_y")->capture_default_str();
-  command->add_option("--threads", options.thread_count, "threads (default: as many as the machine runs)")
-      ->check(CLI::Range(1, 1024));
-  command->add_flag("--json", options.json, "print the summary as JSON in place of the tables");
+  add_job(*command, options);
   command->callback([&status] { status = compare_command(options); });
 }
 

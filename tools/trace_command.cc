@@ -23,11 +23,8 @@ bool wants(const TraceOptions& options, const char* output) {
 }  // namespace
 
 int trace_command(const TraceOptions& options) {
-  const auto pattern = trace::parse_pattern(options.pattern);
-  if (!pattern) {
-    fmt::print(stderr, "sagitta trace: --pattern {}: expected hexapolar, square, random:SEED, fan_x or fan_y\n", options.pattern);
-    return 2;
-  }
+  auto request = make_request("trace", options);
+  if (!request) return 2;
   const auto model = load_model(options.system);
   if (!model) return 1;
   const auto compiled = load_scene(*model);
@@ -36,18 +33,14 @@ int trace_command(const TraceOptions& options) {
   const std::filesystem::path folder(options.folder);
   if (!make_folder("trace", folder)) return 1;
 
-  analysis::JobRequest request;
-  request.want_spot = wants(options, "spot");
-  request.want_wavefront = wants(options, "wavefront");
-  request.pattern = *pattern;
-  request.ray_count = options.ray_count;
-  request.thread_count = options.thread_count;
+  request->want_spot = wants(options, "spot");
+  request->want_wavefront = wants(options, "wavefront");
   output::Report report = make_report(*model, *compiled);
-  report.results = std::move(run_with_progress({&*compiled->scene, 1}, request).front());
+  report.results = std::move(run_with_progress({&*compiled->scene, 1}, *request).front());
 
   bool all_written = true;
-  if (request.want_spot) all_written &= write_image("trace", folder / "spot", spot_parts(report), spot_figure(report));
-  if (request.want_wavefront) all_written &= write_image("trace", folder / "wavefront", wavefront_parts(report), wavefront_figure(report));
+  if (request->want_spot) all_written &= write_image("trace", folder / "spot", spot_parts(report), spot_figure(report));
+  if (request->want_wavefront) all_written &= write_image("trace", folder / "wavefront", wavefront_parts(report), wavefront_figure(report));
   const std::string summary = summary_json(report);
   all_written &= written("trace", output::write_file((folder / "summary.json").string(), summary));
   fmt::print("{}", options.json ? summary : summary_text(report));

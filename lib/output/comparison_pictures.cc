@@ -44,7 +44,7 @@ std::optional<Range> common_range(const std::vector<const Panel*>& panels) {
 // The middle of a spot's picture, `half_width` mm to each side, so that a few stray rays do not make all spots small.
 void crop(Panel& panel, double half_width) {
   const int size = panel.map.width;
-  const int kept = std::min(size, 2 * std::max(1, static_cast<int>(std::ceil(half_width / panel.axes.pixel_width))));
+  const int kept = std::min(size, 2 * std::max(4, static_cast<int>(std::ceil(half_width / panel.axes.pixel_width))));
   const int first = (size - kept) / 2;
   double all = 0, shown = 0;
   std::vector<float> middle;
