@@ -15,7 +15,7 @@ namespace {
 using nlohmann::ordered_json;
 using scene::ZernikeSurface;
 
-constexpr const char* frame = "the surface's local frame: x to the examiner's left, y up, z into the eye (along the light)";
+constexpr const char* frame = "the surface's local frame: x to the examiner's left, y up, z into the eye";
 
 std::string_view indexing_name(numerics::ZernikeIndexing indexing) {
   switch (indexing) {
@@ -35,6 +35,9 @@ std::string terms_of(const ZernikeSurface& surface) {
 // As the reader takes it back.
 std::string yaml_number(double value) { return std::isinf(value) ? (value > 0 ? ".inf" : "-.inf") : fmt::format("{:.17g}", value); }
 
+// -0 is 0.
+std::string six_places(double value) { return fmt::format("{:.6f}", std::round(value * 1e6) / 1e6 + 0.0); }
+
 std::string name_of(const std::string& file) { return printable(file.substr(file.rfind('/') + 1), 60); }
 
 }  // namespace
@@ -44,14 +47,14 @@ std::string fit_text(const FitReport& report) {
   const auto length = [](double mm) { return significant(mm, 7); };
   const auto micrometres = [](double um) { return significant(um, 4); };
   Table fits{{{"fit", "", true}, {"radius", "mm"}, {"conic constant", ""}, {"vertex z", "mm"}, {"RMS", "um"}}, {}};
-  fits.rows = {{"sphere, vertex free along z", length(fit.sphere_radius_mm), "", length(fit.sphere_vertex_mm), micrometres(fit.sphere_rms_um)},
-               {"conic, vertex free along z", length(fit.radius_mm), significant(fit.conic_constant, 5), length(fit.vertex_mm), micrometres(fit.conic_rms_um)},
+  fits.rows = {{"sphere, vertex free along z", length(fit.sphere_radius_mm), "", six_places(fit.sphere_vertex_mm), micrometres(fit.sphere_rms_um)},
+               {"conic, vertex free along z", length(fit.radius_mm), significant(fit.conic_constant, 5), six_places(fit.vertex_mm), micrometres(fit.conic_rms_um)},
                {"that conic with " + terms_of(fit), "", "", "", micrometres(fit.rms_um)}};
   Table terms{{{"index", ""}, {"n", ""}, {"m", ""}, {"coefficient", "um"}}, {}};
   int index = numerics::first_zernike_index(fit.indexing);
   for (const double um : fit.coefficients_um) {
     const numerics::ZernikeTerm term = numerics::zernike_term(fit.indexing, index);
-    terms.rows.push_back({std::to_string(index++), std::to_string(term.n), std::to_string(term.m), fmt::format("{:.6f}", um)});
+    terms.rows.push_back({std::to_string(index++), std::to_string(term.n), std::to_string(term.m), six_places(um)});
   }
   return fmt::format("{}: {} points within {:g} mm, {:.1f} % of the circle inside them\nin {}\n\n{}\n"
                      "peak to valley {} um, condition number {:.4g}, normalisation radius {:g} mm\n\n{}",

@@ -13,6 +13,8 @@
 //
 // A curvature that bends less than 1e-8 of the largest distance from the axis is 0: a plane. Where the points do not tell
 // a conic constant (all at two distances from the axis, a plane, |K| > 100) the conic is the sphere.
+//
+// Source: J. Nocedal and S. Wright, Numerical Optimization (2nd ed., 2006), 10.3, for Gauss-Newton with shortened steps.
 #pragma once
 
 #include <optional>

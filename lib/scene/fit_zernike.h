@@ -20,8 +20,8 @@
 // rings, a sector, the middle, or else the terms are too many. Refused too are points that end before 0.8 R: the terms would
 // be extrapolated.
 //
-// Source: numerics/zernike_basis.h for Z_j; G. Golub and C. Van Loan, Matrix Computations (4th ed., 2013), 5.3.3 (QR) and
-// 5.3.7 (column scaling).
+// Source: numerics/zernike_basis.h for Z_j; G. Golub and C. Van Loan, Matrix Computations (4th ed., 2013), chapter 5, for
+// QR and the scaling of columns.
 #pragma once
 
 #include <cstddef>

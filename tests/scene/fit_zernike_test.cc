@@ -164,13 +164,30 @@ TEST_F(NoisyPoints, NoSphereAndNoConicNearbyFitsBetter) {
   EXPECT_NEAR(rms_um(found.sphere_vertex_mm, found.sphere_radius_mm, 0), found.sphere_rms_um, 1e-9);
   EXPECT_NEAR(rms_um(found.vertex_mm, found.radius_mm, found.conic_constant), found.conic_rms_um, 1e-9);
   EXPECT_LT(found.conic_rms_um, found.sphere_rms_um);
-  for (const double step : {1e-5, -1e-5}) {
-    EXPECT_GT(rms_um(found.sphere_vertex_mm + step, found.sphere_radius_mm, 0), found.sphere_rms_um);
-    EXPECT_GT(rms_um(found.sphere_vertex_mm, found.sphere_radius_mm * (1 + step), 0), found.sphere_rms_um);
-    EXPECT_GT(rms_um(found.vertex_mm + step, found.radius_mm, found.conic_constant), found.conic_rms_um);
-    EXPECT_GT(rms_um(found.vertex_mm, found.radius_mm * (1 + step), found.conic_constant), found.conic_rms_um);
-    EXPECT_GT(rms_um(found.vertex_mm, found.radius_mm, found.conic_constant + 10 * step), found.conic_rms_um);
-  }
+  // Along each parameter the sum of squares is a parabola near its least value; its lowest point must be where the fit says,
+  // to 1e-3 of a small step: the third order is that much smaller than the second, and rounding of the sum far below both.
+  const auto is_lowest_at = [&](double vertex, double radius, double K, double to_vertex, double to_radius, double to_K) {
+    const auto sum = [&](double t) { return std::pow(rms_um(vertex + t * to_vertex, radius + t * to_radius, K + t * to_K), 2); };
+    const double before = sum(-1), here = sum(0), after = sum(1);
+    EXPECT_GT(before + after - 2 * here, 1e-5 * here);
+    EXPECT_NEAR((before - after) / 2 / (before + after - 2 * here), 0, 1e-3) << to_vertex << ' ' << to_radius << ' ' << to_K;
+  };
+  is_lowest_at(found.sphere_vertex_mm, found.sphere_radius_mm, 0, 1e-4, 0, 0);
+  is_lowest_at(found.sphere_vertex_mm, found.sphere_radius_mm, 0, 0, 1e-3, 0);
+  is_lowest_at(found.vertex_mm, found.radius_mm, found.conic_constant, 1e-4, 0, 0);
+  is_lowest_at(found.vertex_mm, found.radius_mm, found.conic_constant, 0, 1e-3, 0);
+  is_lowest_at(found.vertex_mm, found.radius_mm, found.conic_constant, 0, 0, 1e-2);
+}
+
+// A paraboloid steeper than any sphere that reaches its rim: full steps would leave the sphere behind.
+TEST(FitZernikeSurface, FindsASphereWhereNoneFits) {
+  const auto fit = fit_zernike_surface(cloud_of(uniform_random(3000, 3, 7), [](double x, double y) { return (x * x + y * y) / 2 / 1.2; }), {1, 3});
+  ASSERT_TRUE(fit.surface) << fit.reason;
+  EXPECT_GE(fit.surface->sphere_radius_mm, 2.99);
+  EXPECT_LT(fit.surface->sphere_radius_mm, 3.3);
+  EXPECT_GT(fit.surface->sphere_rms_um, 1);
+  EXPECT_NEAR(fit.surface->radius_mm, 1.2, 1e-9);
+  EXPECT_NEAR(fit.surface->conic_constant, -1, 1e-9);
 }
 
 // The residual of least squares is orthogonal to every term; with terms of rms 1 and a residual below 1 um the mean product
