@@ -10,13 +10,18 @@
 
 namespace sagitta::tools {
 
-struct TraceOptions {
-  std::string system, folder;
-  std::vector<std::string> only;  // of "spot", "wavefront"; empty: both
+// Of the commands that trace a job.
+struct JobOptions {
+  std::string folder;
   std::int64_t ray_count = 10000;
   std::string pattern = "hexapolar";
   int thread_count = 0;
   bool json = false;
+};
+
+struct TraceOptions : JobOptions {
+  std::string system;
+  std::vector<std::string> only;  // of "spot", "wavefront"; empty: both
 };
 int trace_command(const TraceOptions& options);
 
@@ -30,6 +35,14 @@ struct RaysOptions {
 };
 int rays_command(const RaysOptions& options);
 
+struct CompareOptions : JobOptions {
+  std::vector<std::string> systems;
+  std::string surface, points, format = "xyz", axes = "local";  // variants of one surface, made from points
+  std::vector<std::string> as;                                  // "delaunay", "delaunay:linear", "zernike:36"
+  std::optional<double> radius_mm;
+};
+int compare_command(const CompareOptions& options);
+
 struct CheckOptions {
   std::string system;
 };
@@ -41,5 +54,15 @@ struct ConvertOptions {
   std::string axes = "local";  // or "osa"
 };
 int convert_command(const ConvertOptions& options);
+
+struct FitOptions {
+  std::string points, format = "xyz", axes = "local";
+  int terms = 36;
+  double radius_mm = 3;
+  std::string indexing = "osa";
+  std::string fragment;  // FILE.yaml; "": none
+  bool json = false;
+};
+int fit_command(const FitOptions& options);
 
 }  // namespace sagitta::tools

@@ -145,23 +145,4 @@ std::vector<GivenRay> read_given_rays(const std::string& file, double default_wa
   return rays;
 }
 
-bool set_wavelengths(prescription::Model& model, const std::vector<double>& wavelengths_nm, const std::string& source) {
-  bool covered = true;
-  std::set<std::pair<std::string, double>> told;
-  const auto check = [&](const medium::Medium& medium, double nm) {
-    if (medium.covers(nm / 1000) || !told.emplace(medium.name, nm).second) return;
-    covered = false;
-    fmt::print(stderr, "sagitta rays: {}: {:g} nm lies outside the range of {}, {:g} to {:g} nm\n", source, nm, medium.name,
-               medium.shortest_um * 1e3, medium.longest_um * 1e3);
-  };
-  for (const double nm : wavelengths_nm) {
-    check(model.object.medium, nm);
-    for (const auto& surface : model.surfaces)
-      if (surface.medium) check(*surface.medium, nm);
-  }
-  model.primary_nm = model.primary_wavelength_nm();
-  model.wavelengths_nm = wavelengths_nm;
-  return covered;
-}
-
 }  // namespace sagitta::tools

@@ -21,8 +21,4 @@ struct GivenRay {
 // digits) is divided out, one within rounding (4 eps) is left as it is.
 std::vector<GivenRay> read_given_rays(const std::string& file, double default_wavelength_nm, prescription::Findings& findings);
 
-// Replaces the wavelengths of a model (its primary one stays); false, with a message that begins with `source`, where a
-// medium does not reach one of them.
-bool set_wavelengths(prescription::Model& model, const std::vector<double>& wavelengths_nm, const std::string& source);
-
 }  // namespace sagitta::tools

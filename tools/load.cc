@@ -3,6 +3,9 @@
 
 #include <fmt/core.h>
 
+#include <set>
+#include <utility>
+
 #include "lib/prescription/reader.h"
 
 namespace sagitta::tools {
@@ -20,8 +23,27 @@ std::optional<prescription::Model> load_model(const std::string& file) {
 
 std::optional<scene::CompileResult> load_scene(const prescription::Model& model) {
   scene::CompileResult compiled = scene::compile(model);
-  if (!report(compiled.findings)) return std::nullopt;
+  if (!report(prescription::in_order(compiled.findings, model.documents))) return std::nullopt;
   return compiled;
+}
+
+bool set_wavelengths(prescription::Model& model, const std::vector<double>& wavelengths_nm, const std::string& who) {
+  bool covered = true;
+  std::set<std::pair<std::string, double>> told;
+  const auto check = [&](const medium::Medium& medium, double nm) {
+    if (medium.covers(nm / 1000) || !told.emplace(medium.name, nm).second) return;
+    covered = false;
+    fmt::print(stderr, "sagitta {}: {:g} nm lies outside the range of {}, {:g} to {:g} nm\n", who, nm, medium.name,
+               medium.shortest_um * 1e3, medium.longest_um * 1e3);
+  };
+  for (const double nm : wavelengths_nm) {
+    check(model.object.medium, nm);
+    for (const auto& surface : model.surfaces)
+      if (surface.medium) check(*surface.medium, nm);
+  }
+  model.primary_nm = model.primary_wavelength_nm();
+  model.wavelengths_nm = wavelengths_nm;
+  return covered;
 }
 
 }  // namespace sagitta::tools

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "lib/prescription/model.h"
 #include "lib/scene/compile.h"
@@ -13,6 +14,10 @@ namespace sagitta::tools {
 // None, after printing every finding to standard error, where there is an error.
 std::optional<prescription::Model> load_model(const std::string& file);
 std::optional<scene::CompileResult> load_scene(const prescription::Model& model);
+
+// Replaces the wavelengths of a model (its primary one stays); false, with a message that begins with "sagitta `who`: ",
+// where a medium does not reach one of them.
+bool set_wavelengths(prescription::Model& model, const std::vector<double>& wavelengths_nm, const std::string& who);
 
 // Prints the findings to standard error; false where there is an error among them.
 bool report(const prescription::Findings& findings);

@@ -114,7 +114,7 @@ class Listing {
 };
 
 int print_launched(const RaysOptions& options, prescription::Model model, std::span<const PupilPoint> pupil) {
-  if (options.wavelength_nm && !set_wavelengths(model, {*options.wavelength_nm}, "--wavelength")) return 1;
+  if (options.wavelength_nm && !set_wavelengths(model, {*options.wavelength_nm}, "rays: --wavelength")) return 1;
   const auto compiled = load_scene(model);
   if (!compiled) return 1;
   const scene::Scene& scene = *compiled->scene;
@@ -148,7 +148,7 @@ int print_given(const RaysOptions& options, prescription::Model model) {
   for (const GivenRay& ray : given)
     if (std::find(wavelengths.begin(), wavelengths.end(), ray.wavelength_nm) == wavelengths.end())
       wavelengths.push_back(ray.wavelength_nm);
-  if (!set_wavelengths(model, wavelengths, options.from)) return 1;
+  if (!set_wavelengths(model, wavelengths, "rays: " + options.from)) return 1;
   const auto compiled = load_scene(model);
   if (!compiled) return 1;
 

@@ -7,7 +7,10 @@
 #include <new>
 #include <system_error>
 
+#include "lib/numerics/key.h"
+#include "lib/numerics/zernike_basis.h"
 #include "lib/prescription/cloud_reader.h"
+#include "lib/scene/fit_zernike.h"
 #include "tools/commands.h"
 
 namespace {
@@ -17,6 +20,17 @@ using namespace sagitta::tools;
 constexpr const char* usage_status = R"(Exit status: 0 done; 1 the input is wrong, or not one ray arrived; 2 wrong usage.
 Results go to standard output or the output folder, messages to standard error.)";
 
+CLI::IsMember one_of(std::string_view choices) { return CLI::IsMember(sagitta::numerics::words_of(choices)); }
+
+void add_job(CLI::App& command, JobOptions& options) {
+  command.add_option("--rays", options.ray_count, "rays per field and wavelength, at least (the exact number: 'launched')")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1000000000}))->capture_default_str();
+  command.add_option("--pattern", options.pattern, "hexapolar, square, random:SEED, fan_x or fan_y")->capture_default_str();
+  command.add_option("--threads", options.thread_count, "threads (default: as many as the machine runs)")
+      ->check(CLI::Range(1, 1024));
+  command.add_flag("--json", options.json, "print the summary as JSON in place of the table");
+}
+
 void add_trace(CLI::App& app, int& status) {
   static TraceOptions options;
   CLI::App* command = app.add_subcommand("trace", "Trace every field and wavelength: spots, wavefronts, pictures, summary");
@@ -25,13 +39,29 @@ void add_trace(CLI::App& app, int& status) {
                       "folder for spot.exr, spot.png, wavefront.exr, wavefront.png and summary.json")->required();
   command->add_option("--only", options.only, "spot, wavefront, or both separated by a comma (default: both)")
       ->delimiter(',')->check(CLI::IsMember({"spot", "wavefront"}));
-  command->add_option("--rays", options.ray_count, "rays per field and wavelength, at least (the exact number: 'launched')")
-      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1000000000}))->capture_default_str();
-  command->add_option("--pattern", options.pattern, "hexapolar, square, random:SEED, fan_x or fan_y")->capture_default_str();
-  command->add_option("--threads", options.thread_count, "threads (default: as many as the machine runs)")
-      ->check(CLI::Range(1, 1024));
-  command->add_flag("--json", options.json, "print the summary as JSON in place of the table");
+  add_job(*command, options);
   command->callback([&status] { status = trace_command(options); });
+}
+
+void add_compare(CLI::App& app, int& status) {
+  static CompareOptions options;
+  CLI::App* command = app.add_subcommand("compare", "Trace several systems by the rays of the first, and show what differs");
+  command->add_option("SYSTEM", options.systems, "prescriptions (YAML), 2 to 16; with --surface, one")->required();
+  command->add_option("-o,--output", options.folder, "folder for comparison.exr, comparison.png and summary.json")->required();
+  auto* surface = command->add_option("--surface", options.surface, "name of a surface of SYSTEM that is made from points in several ways");
+  auto* with = command->add_option("--with", options.points, "file of the points");
+  auto* as = command->add_option("--as", options.as,
+      "the ways, separated by commas: delaunay (c1), delaunay:INTERPOLATION, zernike:TERMS; the first is the reference")->delimiter(',');
+  auto* format = command->add_option("--format", options.format, "format of the points")
+      ->check(one_of(sagitta::prescription::cloud_formats()))->capture_default_str();
+  auto* axes = command->add_option("--axes", options.axes, "osa: x of the points is to the examiner's right")
+      ->check(one_of("local|osa"))->capture_default_str();
+  auto* radius = command->add_option("--radius-mm", options.radius_mm, "circle of the Zernike fits (default: what the beam needs)")
+      ->check(CLI::Range(1e-6, 1e6));
+  surface->needs(with)->needs(as);
+  for (CLI::Option* option : {with, as, format, axes, radius}) option->needs(surface);
+  add_job(*command, options);
+  command->callback([&status] { status = compare_command(options); });
 }
 
 void add_rays(CLI::App& app, int& status) {
@@ -63,11 +93,28 @@ void add_convert(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("convert", "Write points in the compact form (binary PLY), which reads at the speed of the disk");
   command->add_option("POINTS", options.points, "file of the points")->required();
   command->add_option("-o,--output", options.file, "PLY file to write, for `format: ply` of a prescription")->required();
-  const std::string formats(sagitta::prescription::cloud_formats());
-  command->add_option("--format", options.format, "format of POINTS")->check(CLI::IsMember(CLI::detail::split(formats, '|')))->capture_default_str();
+  command->add_option("--format", options.format, "format of POINTS")->check(one_of(sagitta::prescription::cloud_formats()))->capture_default_str();
   command->add_option("--axes", options.axes, "frame of POINTS: local, the surface's own, or osa, x to the examiner's right")
-      ->check(CLI::IsMember({"local", "osa"}))->capture_default_str();
+      ->check(one_of("local|osa"))->capture_default_str();
   command->callback([&status] { status = convert_command(options); });
+}
+
+void add_fit(CLI::App& app, int& status) {
+  static FitOptions options;
+  CLI::App* command = app.add_subcommand("fit", "Fit measured points: best sphere, best conic, a Zernike surface for a prescription");
+  command->add_option("POINTS", options.points, "file of the points")->required();
+  command->add_option("--terms", options.terms, "Zernike terms, from the indexing's first")->check(CLI::Range(1, sagitta::scene::most_zernike_terms({})))->capture_default_str();
+  command->add_option("--radius-mm", options.radius_mm, "normalisation radius; points within it are fitted")
+      ->check(CLI::Range(1e-6, 1e9))->capture_default_str();
+  command->add_option("--indexing", options.indexing, "osa, noll or fringe")
+      ->check(one_of(sagitta::numerics::zernike_indexings))->capture_default_str();
+  command->add_option("--format", options.format, "format of the points")
+      ->check(one_of(sagitta::prescription::cloud_formats()))->capture_default_str();
+  command->add_option("--axes", options.axes, "local, or osa: x to the examiner's right (xyz)")
+      ->check(one_of("local|osa"))->capture_default_str();
+  command->add_option("-o,--output", options.fragment, "FILE.yaml for the shape; FILE.exr and FILE.png, the residual map, beside it");
+  command->add_flag("--json", options.json, "print the fit as JSON in place of the tables");
+  command->callback([&status] { status = fit_command(options); });
 }
 
 }  // namespace
@@ -80,8 +127,10 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   int status = 0;
   add_trace(app, status);
+  add_compare(app, status);
   add_rays(app, status);
   add_check(app, status);
+  add_fit(app, status);
   add_convert(app, status);
   try {
     app.parse(argc, argv);

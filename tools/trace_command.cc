@@ -7,10 +7,11 @@
 
 #include "lib/analysis/job.h"
 #include "lib/output/atomic_file.h"
-#include "lib/output/progress.h"
 #include "lib/output/report.h"
 #include "tools/commands.h"
+#include "tools/job_report.h"
 #include "tools/load.h"
+#include "tools/write.h"
 
 namespace sagitta::tools {
 namespace {
@@ -19,75 +20,29 @@ bool wants(const TraceOptions& options, const char* output) {
   return options.only.empty() || std::find(options.only.begin(), options.only.end(), output) != options.only.end();
 }
 
-output::Report make_report(const prescription::Model& model, const scene::CompileResult& compiled) {
-  output::Report report;
-  report.system = model.name.empty() ? std::filesystem::path(model.file).stem().string() : model.name;
-  report.version = SAGITTA_VERSION;
-  report.fields_are_heights = model.fields.kind == prescription::FieldKind::object_heights_mm;
-  for (const auto& field : model.fields.points) report.fields.push_back({field.x, field.y});
-  report.wavelengths_nm = model.wavelengths_nm;
-  for (const auto& surface : model.surfaces) report.surface_names.push_back(surface.name);
-  report.first_order = compiled.first_order;
-  report.smoothing = compiled.smoothing;
-  return report;
-}
-
-// Says what could not be written; true if it was.
-bool written(const output::WriteResult& result) {
-  if (!result.ok()) fmt::print(stderr, "sagitta trace: {}\n", result.error);
-  return result.ok();
-}
-
-bool write_image(const std::filesystem::path& base, std::vector<output::ExrPart> parts, const output::Figure& figure) {
-  const output::Raster picture = output::render(figure);
-  parts.insert(parts.begin(), output::preview_part(picture));
-  return written(output::write_exr(base.string() + ".exr", parts)) && written(output::write_png(base.string() + ".png", picture));
-}
-
 }  // namespace
 
 int trace_command(const TraceOptions& options) {
-  const auto pattern = trace::parse_pattern(options.pattern);
-  if (!pattern) {
-    fmt::print(stderr, "sagitta trace: --pattern {}: expected hexapolar, square, random:SEED, fan_x or fan_y\n", options.pattern);
-    return 2;
-  }
+  auto request = make_request("trace", options);
+  if (!request) return 2;
   const auto model = load_model(options.system);
   if (!model) return 1;
   const auto compiled = load_scene(*model);
   if (!compiled) return 1;
 
-  std::error_code fault;
   const std::filesystem::path folder(options.folder);
-  std::filesystem::create_directories(folder, fault);
-  if (!std::filesystem::is_directory(folder)) {
-    fmt::print(stderr, "sagitta trace: {}: the output folder cannot be made: {}\n", options.folder, fault.message());
-    return 1;
-  }
+  if (!make_folder("trace", folder)) return 1;
 
-  analysis::JobRequest request;
-  request.want_spot = wants(options, "spot");
-  request.want_wavefront = wants(options, "wavefront");
-  request.pattern = *pattern;
-  request.ray_count = options.ray_count;
-  request.thread_count = options.thread_count;
+  request->want_spot = wants(options, "spot");
+  request->want_wavefront = wants(options, "wavefront");
   output::Report report = make_report(*model, *compiled);
-  {
-    constexpr std::uint64_t steps = 1000;
-    output::Progress line("tracing", steps);
-    std::uint64_t shown = 0;
-    report.results = analysis::run_job(*compiled->scene, request, [&](double share) {
-      const auto reached = static_cast<std::uint64_t>(share * steps);
-      line.advance(reached - shown);
-      shown = reached;
-    });
-  }
+  report.results = std::move(run_with_progress({&*compiled->scene, 1}, *request).front());
 
   bool all_written = true;
-  if (request.want_spot) all_written &= write_image(folder / "spot", spot_parts(report), spot_figure(report));
-  if (request.want_wavefront) all_written &= write_image(folder / "wavefront", wavefront_parts(report), wavefront_figure(report));
+  if (request->want_spot) all_written &= write_image("trace", folder / "spot", spot_parts(report), spot_figure(report));
+  if (request->want_wavefront) all_written &= write_image("trace", folder / "wavefront", wavefront_parts(report), wavefront_figure(report));
   const std::string summary = summary_json(report);
-  all_written &= written(output::write_file((folder / "summary.json").string(), summary));
+  all_written &= written("trace", output::write_file((folder / "summary.json").string(), summary));
   fmt::print("{}", options.json ? summary : summary_text(report));
   if (!all_written) return 1;
 

@@ -41,15 +41,20 @@ trace::RayBatch traced(const scene::Scene& scene, std::size_t field, std::size_t
   return rays;
 }
 
-// One collector a result, all at one scale; of each field centred on the first wavelength that brings rays. A perfect
-// image still has a size to draw: a nanometre.
-std::vector<SpotCollector> make_collectors(const scene::Scene& scene, const JobRequest& request) {
-  struct Frame {
+// Where the spots of a scene's fields are, each about the first wavelength that brings rays, and how far they all reach
+// from there. A perfect image still has a size to draw: a nanometre.
+struct SpotFrames {
+  struct Centre {
     double x = 0, y = 0;
   };
-  const std::vector<trace::PupilPoint> pilot = pilot_points();
-  std::vector<Frame> frames(scene.fields.size());
+  std::vector<Centre> centres;
   double half_width = 1e-6;
+};
+
+SpotFrames spot_frames(const scene::Scene& scene) {
+  const std::vector<trace::PupilPoint> pilot = pilot_points();
+  SpotFrames result{std::vector<SpotFrames::Centre>(scene.fields.size())};
+  auto& [frames, half_width] = result;
   for (std::size_t field = 0; field < frames.size(); ++field) {
     bool centred = false;
     for (std::size_t w = 0; w < scene.wavelengths.size(); ++w) {
@@ -63,12 +68,7 @@ std::vector<SpotCollector> make_collectors(const scene::Scene& scene, const JobR
       half_width = std::max(half_width, std::hypot(spot.centroid_x - frames[field].x, spot.centroid_y - frames[field].y) + spot.geometric_radius);
     }
   }
-  const double pixel = 2 * round_up(half_width) / request.spot_image_size;
-  std::vector<SpotCollector> collectors;
-  for (const Frame& frame : frames)
-    for (std::size_t w = 0; w < scene.wavelengths.size(); ++w)
-      collectors.emplace_back(SpotImage(request.spot_image_size, pixel, frame.x, frame.y));
-  return collectors;
+  return result;
 }
 
 bool is_made_of_data(const surface::Shape& shape) {
@@ -94,43 +94,69 @@ std::vector<Coverage> coverage_of(const scene::Scene& scene, const trace::Status
 
 }  // namespace
 
-std::vector<JobResult> run_job(const scene::Scene& scene, const JobRequest& request, const Progress& progress) {
-  std::vector<JobResult> results;
-  for (std::size_t field = 0; field < scene.fields.size(); ++field)
-    for (std::size_t w = 0; w < scene.wavelengths.size(); ++w) {
-      JobResult& result = results.emplace_back();
-      result.field = field;
-      result.wavelength = w;
+std::vector<std::vector<JobResult>> run_jobs(std::span<const scene::Scene> scenes, const JobRequest& request, const Progress& progress) {
+  struct Task {
+    const scene::Scene* scene;
+    JobResult* result;
+  };
+  std::vector<std::vector<JobResult>> results(scenes.size());
+  std::vector<Task> tasks;
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    const std::size_t wavelength_count = scenes[i].wavelengths.size();
+    results[i].resize(scenes[i].fields.size() * wavelength_count);
+    for (std::size_t k = 0; k < results[i].size(); ++k) {
+      results[i][k].field = k / wavelength_count;
+      results[i][k].wavelength = k % wavelength_count;
+      tasks.push_back({&scenes[i], &results[i][k]});
     }
+  }
 
   if (request.want_spot) {
-    std::vector<SpotCollector> collectors = make_collectors(scene, request);
+    std::vector<SpotFrames> frames;
+    double half_width = 0;
+    for (const scene::Scene& scene : scenes) {
+      frames.push_back(spot_frames(scene));
+      half_width = std::max(half_width, frames.back().half_width);
+    }
+    const double first_pixel = 2 * round_up(half_width) / request.spot_image_size;
+    std::vector<SpotCollector> collectors;
+    for (const Task& task : tasks) {
+      const SpotFrames::Centre& centre = frames[static_cast<std::size_t>(task.scene - scenes.data())].centres[task.result->field];
+      collectors.emplace_back(SpotImage(request.spot_image_size, first_pixel, centre.x, centre.y));
+    }
     trace::PupilStream stream(request.pattern, request.ray_count);
     std::int64_t done = 0;
-    const double all = static_cast<double>(stream.size()) * static_cast<double>(results.size());
+    const double all = static_cast<double>(stream.size()) * static_cast<double>(tasks.size());
     for (std::vector<trace::PupilPoint> pupil; !(pupil = stream.next(portion)).empty();)
-      for (std::size_t i = 0; i < results.size(); ++i) {
-        collectors[i].add(traced(scene, results[i].field, results[i].wavelength, pupil, request.thread_count));
+      for (std::size_t i = 0; i < tasks.size(); ++i) {
+        const auto& [scene, result] = tasks[i];
+        collectors[i].add(traced(*scene, result->field, result->wavelength, pupil, request.thread_count));
         done += static_cast<std::int64_t>(pupil.size());
         if (progress) progress(static_cast<double>(done) / all);
       }
     double pixel = 0;
     for (const SpotCollector& collector : collectors) pixel = std::max(pixel, collector.image().pixel_mm);
-    for (std::size_t i = 0; i < results.size(); ++i) {
-      results[i].spot = collectors[i].spot();
-      results[i].spot_image = collectors[i].image_with(pixel);
-      results[i].rays = results[i].spot->rays;
+    for (std::size_t i = 0; i < tasks.size(); ++i) {
+      JobResult& result = *tasks[i].result;
+      result.spot = collectors[i].spot();
+      result.spot_image = collectors[i].image_with(pixel);
+      result.rays = result.spot->rays;
     }
   }
-  if (request.want_wavefront)
-    for (JobResult& result : results) {
+  for (const auto& [scene, result] : tasks) {
+    if (request.want_wavefront) {
       WavefrontRequest wanted = request.wavefront;
       wanted.thread_count = request.thread_count;
-      result.wavefront = wavefront(scene, scene.wavelengths[result.wavelength], scene.fields[result.field], wanted);
-      if (!request.want_spot) result.rays = result.wavefront->rays;
+      result->wavefront = wavefront(*scene, scene->wavelengths[result->wavelength], scene->fields[result->field], wanted);
+      if (!request.want_spot) result->rays = result->wavefront->rays;
     }
-  for (JobResult& result : results) result.coverage = coverage_of(scene, result.rays);
+    result->coverage = coverage_of(*scene, result->rays);
+  }
   return results;
+}
+
+std::vector<JobResult> run_job(const scene::Scene& scene, const JobRequest& request, const Progress& progress) {
+  return std::move(run_jobs({&scene, 1}, request, progress).front());
 }
 
 }  // namespace sagitta::analysis

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "lib/analysis/spot.h"
@@ -35,7 +36,7 @@ struct JobResult {
   trace::StatusCounts rays;                // of the spot's rays, or of the wavefront's where only that is asked for
   std::vector<Coverage> coverage;          // of every surface made of data, by the same rays
   std::optional<Spot> spot;
-  std::optional<SpotImage> spot_image;     // one pixel size for the whole job; centred, for all wavelengths of a field, on
+  std::optional<SpotImage> spot_image;     // one pixel size for all the scenes of a job; centred, for all wavelengths of a field, on
                                            // the centroid of some pilot rays of the first one that has any: near the
                                            // spot's own centroid, not on it
   std::optional<WavefrontResult> wavefront;
@@ -46,5 +47,8 @@ using Progress = std::function<void(double)>;
 
 // Results by field, then wavelength. Memory does not grow with the number of rays.
 std::vector<JobResult> run_job(const scene::Scene& scene, const JobRequest& request, const Progress& progress = {});
+
+// The same for several scenes, so that their spot images have one scale.
+std::vector<std::vector<JobResult>> run_jobs(std::span<const scene::Scene> scenes, const JobRequest& request, const Progress& progress = {});
 
 }  // namespace sagitta::analysis

@@ -3,8 +3,11 @@
 // against such tables, so that a key is described once, beside the code that uses its value.
 #pragma once
 
+#include <algorithm>
 #include <limits>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace sagitta::numerics {
 
@@ -57,5 +60,13 @@ struct Key {
   std::string_view indexed_by = {};
   IndexRange (*indices)(std::string_view choice) = nullptr;  // none: IndexRange{}
 };
+
+// The words of `choices`, "osa|noll|fringe".
+inline std::vector<std::string> words_of(std::string_view choices) {
+  std::vector<std::string> words;
+  for (; !choices.empty(); choices.remove_prefix(std::min(choices.size(), words.back().size() + 1)))
+    words.emplace_back(choices.substr(0, choices.find('|')));
+  return words;
+}
 
 }  // namespace sagitta::numerics

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `sagitta trace` says: the results of a job as JSON, table, EXR parts and figures.
+// What `sagitta trace` says, and `compare` of each system: the results of a job as JSON, table, EXR parts and figures.
 //
 // Part names: spot.fieldI.NMnm and wavefront.fieldI.NMnm, I from 0, NM the wavelength as in the prescription. Channels:
 // Y (ray counts; OPD in waves, NaN where there is none) and wavefront.mask (0 to 5: the ray's status in the order of the
@@ -26,6 +26,7 @@ struct Report {
   std::vector<std::array<double, 2>> fields;  // degrees, or mm
   std::vector<double> wavelengths_nm;
   std::vector<std::string> surface_names;     // [0] of surface 1
+  std::vector<int> surfaces_of_flat_facets;   // their numbers: wavefronts behind one are of no use, which is said
   scene::FirstOrder first_order;              // at the primary wavelength
   std::map<int, scene::Smoothing> smoothing;  // by the number of the surface
   std::vector<analysis::JobResult> results;

@@ -2,9 +2,8 @@
 // The results as JSON and as a table.
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
-#include "lib/output/report.h"
+#include "lib/output/report_internal.h"
+#include "lib/output/summary_internal.h"
 #include "lib/output/text.h"
 
 namespace sagitta::output {
@@ -13,8 +12,6 @@ namespace {
 using nlohmann::ordered_json;
 using surface::Status;
 
-// A number that does not exist is null: nlohmann writes NaN and infinity so, and every other number with as many digits
-// as bring back its bits.
 ordered_json pupil_json(const scene::Pupil& pupil) {
   return {{"z_mm", pupil.z}, {"semi_diameter_mm", pupil.semi_diameter}};
 }
@@ -77,11 +74,9 @@ ordered_json wavefront_json(const analysis::WavefrontResult& measured, double pu
 }
 
 ordered_json result_json(const Report& report, const analysis::JobResult& result) {
-  ordered_json json{{"field", result.field},
-                    {report.fields_are_heights ? "object_height_mm" : "angle_deg", report.fields[result.field]},
-                    {"wavelength_nm", report.wavelengths_nm[result.wavelength]},
-                    {"rays", rays_json(result.rays)},
-                    {"lost", losses_json(report, result.rays)}};
+  ordered_json json = place_json(report, result);
+  json["rays"] = rays_json(result.rays);
+  json["lost"] = losses_json(report, result.rays);
   if (!result.coverage.empty()) {
     json["coverage"] = ordered_json::array();
     for (const auto& coverage : result.coverage)
@@ -102,8 +97,6 @@ ordered_json result_json(const Report& report, const analysis::JobResult& result
   return json;
 }
 
-std::string significant(double value) { return std::isfinite(value) ? fmt::format("{:.5g}", value) : "-"; }
-
 // In mm; -0 is 0.
 std::string to_a_nanometre(double value) {
   return std::isfinite(value) ? fmt::format("{:.6f}", std::round(value * 1e6) / 1e6 + 0.0) : "-";
@@ -111,14 +104,38 @@ std::string to_a_nanometre(double value) {
 
 }  // namespace
 
-std::string summary_json(const Report& report) {
+std::string significant(double value) { return std::isfinite(value) ? fmt::format("{:.5g}", value) : "-"; }
+
+ordered_json place_json(const Report& report, const analysis::JobResult& result) {
+  return {{"field", result.field},
+          {report.fields_are_heights ? "object_height_mm" : "angle_deg", report.fields[result.field]},
+          {"wavelength_nm", report.wavelengths_nm[result.wavelength]}};
+}
+
+ordered_json report_json(const Report& report) {
   ordered_json json{{"system", report.system},
                     {"version", report.version},
                     {"first_order", first_order_json(report.first_order)},
                     {"results", ordered_json::array()}};
   if (!report.smoothing.empty()) json["smoothing"] = smoothing_json(report);
   for (const auto& result : report.results) json["results"].push_back(result_json(report, result));
-  return json.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  if (const std::string note = facets_note(report); !note.empty()) json["note"] = note;
+  return json;
+}
+
+std::string text_of(const ordered_json& json) { return json.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n"; }
+
+std::string summary_json(const Report& report) { return text_of(report_json(report)); }
+
+std::vector<std::string> remarks(const Report& report, const analysis::JobResult& result) {
+  std::vector<std::string> lines;
+  const std::string at = fmt::format("field {} at {:g} nm", result.field, report.wavelengths_nm[result.wavelength]);
+  if (result.wavefront && !result.wavefront->wavefront)
+    lines.push_back(fmt::format("no wavefront of {}: {}", at, result.wavefront->reason));
+  for (const auto& [ended, count] : result.rays.endings)
+    lines.push_back(fmt::format("{}: {} rays {} at surface {} {}", at, count, surface::status_names[static_cast<std::size_t>(ended % 8)],
+                                ended / 8, report.surface_names[static_cast<std::size_t>(ended / 8 - 1)]));
+  return lines;
 }
 
 std::string summary_text(const Report& report) {
@@ -146,9 +163,9 @@ std::string summary_text(const Report& report) {
     column("OPD RMS", "waves");
     column("OPD P-V", "waves");
   }
-  std::string remarks;
+  std::string below;
   for (const auto& [number, smoothing] : report.smoothing)
-    remarks += fmt::format("surface {} {} is smoothed: its heights leave the points by {} um rms, {} um at most\n", number,
+    below += fmt::format("surface {} {} is smoothed: its heights leave the points by {} um rms, {} um at most\n", number,
                            report.surface_names[static_cast<std::size_t>(number - 1)], significant(1e3 * smoothing.residual_rms),
                            significant(1e3 * smoothing.residual_max));
   for (const auto& result : report.results) {
@@ -167,22 +184,16 @@ std::string summary_text(const Report& report) {
       const auto& wavefront = result.wavefront->wavefront;
       row.push_back(wavefront ? significant(wavefront->rms_waves) : "-");
       row.push_back(wavefront ? significant(wavefront->peak_to_valley_waves) : "-");
-      if (!wavefront)
-        remarks += fmt::format("no wavefront of field {} at {:g} nm: {}\n", result.field, report.wavelengths_nm[result.wavelength],
-                               result.wavefront->reason);
     }
     table.rows.push_back(std::move(row));
-    for (const auto& [ended, count] : result.rays.endings)
-      remarks += fmt::format("field {} at {:g} nm: {} rays {} at surface {} {}\n", result.field,
-                             report.wavelengths_nm[result.wavelength], count,
-                             surface::status_names[static_cast<std::size_t>(ended % 8)], ended / 8,
-                             report.surface_names[static_cast<std::size_t>(ended / 8 - 1)]);
+    for (const std::string& line : remarks(report, result)) below += line + "\n";
   }
+  if (const std::string note = facets_note(report); !note.empty()) below += note + "\n";
   const scene::FirstOrder& paraxial = report.first_order;
   return fmt::format("{}\neffective focal length {} mm, back focal length {} mm, entrance pupil {} mm wide at z = {} mm\n\n{}{}{}",
                      printable(report.system, 200), significant(paraxial.effective_focal_length), significant(paraxial.back_focal_length),
                      significant(2 * paraxial.entrance_pupil.semi_diameter), significant(paraxial.entrance_pupil.z),
-                     to_text(table), remarks.empty() ? "" : "\n", remarks);
+                     to_text(table), below.empty() ? "" : "\n", below);
 }
 
 }  // namespace sagitta::output

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "lib/prescription/material_reader.h"
 #include "lib/prescription/value_reader.h"
 
@@ -26,15 +28,17 @@ medium::Medium MediumReader::read_name(const YamlNode& node) {
                     fmt::format("write {{index: {}}}", excerpt(node.text)));
     return medium::air();
   }
-  if (const auto known = known_.find(node.text); known != known_.end()) return known->second;
-  if (const auto failed = failed_.find(node.text); failed != failed_.end()) {
+  const std::string key = (std::filesystem::path(node.place.file).parent_path() / node.text).string();
+  if (const auto known = known_.find(key); known != known_.end()) return known->second;
+  if (const auto failed = failed_.find(key); failed != failed_.end()) {
+    const bool is_here = failed->second.file == node.place.file;
     findings_.error(node.place, fmt::format("medium '{}' cannot be read", excerpt(node.text)),
-                    fmt::format("see line {}", failed->second));
+                    fmt::format("see {}line {}", is_here ? "" : failed->second.file + ", ", failed->second.line));
     return medium::air();
   }
   const auto found = find_material(node.text, node.place, findings_);
-  if (found) return known_.emplace(node.text, *found).first->second;
-  failed_.emplace(node.text, node.place.line);
+  if (found) return known_.emplace(key, *found).first->second;
+  failed_.emplace(key, node.place);
   return medium::air();
 }
 

@@ -32,8 +32,9 @@ class MediumReader {
   medium::Medium read_inline(const YamlNode& node);
 
   Findings& findings_;
+  // By folder and name, since a name means a file beside the one in which it stands.
   std::map<std::string, medium::Medium> known_;  // a file is read once,
-  std::map<std::string, int> failed_;            // and faults in it are told once, for the use on that line
+  std::map<std::string, Place> failed_;          // and faults in it are told once, for the use there
   std::vector<MediumUse> uses_;
 };
 

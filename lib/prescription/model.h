@@ -11,6 +11,7 @@
 #include "lib/medium/medium.h"
 #include "lib/numerics/vec3.h"
 #include "lib/prescription/diagnostics.h"
+#include "lib/prescription/documents.h"
 #include "lib/prescription/parameters.h"
 #include "lib/prescription/point_cloud.h"
 
@@ -62,6 +63,7 @@ struct Surface {
 
 struct Model {
   std::string file;
+  std::vector<Document> documents;  // the file and the bases that it extends
   std::string name, source;
   std::vector<double> wavelengths_nm;
   std::optional<double> primary_nm;  // none: the first wavelength

@@ -4,23 +4,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <limits>
 #include <set>
-#include <tuple>
 #include <utility>
 
 #include "lib/prescription/check.h"
+#include "lib/prescription/documents.h"
+#include "lib/prescription/extends.h"
 #include "lib/prescription/keys.h"
 #include "lib/prescription/medium_reader.h"
 #include "lib/prescription/surface_reader.h"
 #include "lib/prescription/value_reader.h"
-#include "lib/prescription/yaml_tree.h"
 
 namespace sagitta::prescription {
 namespace {
-
-constexpr int most_errors = 100;
 
 // The place of a key in its table, which is the enumerator's value.
 template <class Kind>
@@ -91,11 +88,12 @@ Object read_object(const YamlNode& node, MediumReader& media, Findings& findings
   return object;
 }
 
-Model read_model(const YamlNode& root, const std::string& file, Findings& findings) {
+Model read_model(const YamlNode& root, const std::vector<Document>& documents, Findings& findings) {
   const Section section(root, "the prescription", system_keys, findings);
   MediumReader media(findings);
   Model model;
-  model.file = file;
+  model.file = documents.front().file;
+  model.documents = documents;
   model.place = root.place;
   section.number("sagitta");
   model.name = section.text("name").value_or("");
@@ -105,37 +103,9 @@ Model read_model(const YamlNode& root, const std::string& file, Findings& findin
   if (const YamlNode* node = section.find("aperture")) model.aperture = read_aperture(*node, findings);
   if (const YamlNode* node = section.find("fields")) model.fields = read_fields(*node, findings);
   if (const YamlNode* node = section.find("object")) model.object = read_object(*node, media, findings);
-  const std::string folder = std::filesystem::path(file).parent_path().string();
-  if (const YamlNode* node = section.find("surfaces")) model.surfaces = read_surfaces(*node, folder, media, findings);
+  if (const YamlNode* node = section.find("surfaces")) model.surfaces = read_surfaces(*node, media, findings);
   check_model(model, media.uses(), findings);
   return model;
-}
-
-// The findings in the order of the prescription, up to `most_errors` errors. What is said about another file goes with
-// the note "named here" that follows it and has a place in the prescription.
-Findings in_order(const Findings& findings, const std::string& file) {
-  struct Placed {
-    int line, column;
-    const Finding* finding;
-  };
-  std::vector<Placed> placed;
-  std::pair<int, int> last_own{0, 0};
-  for (auto one = findings.all().rbegin(); one != findings.all().rend(); ++one) {
-    if (one->place.file == file) last_own = {one->place.line, one->place.column};
-    placed.push_back({last_own.first, last_own.second, &*one});
-  }
-  std::reverse(placed.begin(), placed.end());
-  std::stable_sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) {
-    return std::tie(a.line, a.column) < std::tie(b.line, b.column);
-  });
-  Findings ordered;
-  for (const Placed& one : placed) {
-    if (ordered.error_count() == most_errors) break;
-    ordered.add(*one.finding);
-  }
-  if (findings.error_count() > most_errors)
-    ordered.note({file}, fmt::format("and {} more errors", findings.error_count() - most_errors));
-  return ordered;
 }
 
 }  // namespace
@@ -143,9 +113,10 @@ Findings in_order(const Findings& findings, const std::string& file) {
 ReadResult read_prescription(const std::string& file) {
   Findings findings;
   std::optional<Model> model;
-  if (const YamlNode::Pointer root = read_yaml(file, findings)) model = read_model(*root, file, findings);
+  const ExtendedTree tree = read_extended(file, findings);
+  if (tree.root) model = read_model(*tree.root, tree.documents, findings);
   if (findings.has_errors()) model.reset();
-  return {std::move(model), in_order(findings, file)};
+  return {std::move(model), in_order(findings, tree.documents)};
 }
 
 }  // namespace sagitta::prescription

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads a prescription (YAML, version 1) and every file it names: text -> checked model, with all findings in one run.
+// Reads a prescription (YAML, version 1), what it extends, and every file it names: text -> checked model, with all
+// findings in one run.
 #pragma once
 
 #include <optional>

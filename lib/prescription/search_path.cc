@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lib/prescription/search_path.h"
 
+#include <fmt/format.h>
+
 #include <cstdlib>
 #include <filesystem>
 #include <system_error>
@@ -36,6 +38,15 @@ std::optional<std::string> find_file(const std::string& name, const std::string&
     if (is_file(path)) return path.string();
   }
   return std::nullopt;
+}
+
+std::optional<std::string> find_named_file(const std::string& name, const Place& place, Findings& findings) {
+  const std::string beside = fs::path(place.file).parent_path().string();
+  std::optional<std::string> file = find_file(name, beside);
+  if (!file)
+    findings.error(place, fmt::format("there is no file '{}'", excerpt(name)),
+                   fmt::format("looked for in {}", fmt::join(search_folders(beside), ", ")));
+  return file;
 }
 
 }  // namespace sagitta::prescription

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "lib/prescription/cloud_reader.h"
 #include "lib/prescription/search_path.h"
 #include "lib/prescription/value_reader.h"
@@ -52,8 +54,7 @@ void read_value(const Section& section, const Key& key, Parameters& parameters) 
 }
 
 // The points of the file that `key` names; null, with errors, where there are none.
-std::shared_ptr<const PointCloud> read_points(const std::string& key, const std::string& folder,
-                                              const Parameters& parameters, Findings& findings) {
+std::shared_ptr<const PointCloud> read_points(const std::string& key, const Parameters& parameters, Findings& findings) {
   const auto name = parameters.texts.find(key);
   const auto format = parameters.texts.find("format"), axes = parameters.texts.find("axes");
   if (name == parameters.texts.end() || format == parameters.texts.end() || axes == parameters.texts.end())
@@ -66,12 +67,8 @@ std::shared_ptr<const PointCloud> read_points(const std::string& key, const std:
                    "the format itself tells its axes");
     return nullptr;
   }
-  const auto file = find_file(name->second, folder);
-  if (!file) {
-    findings.error(place, fmt::format("there is no file '{}'", excerpt(name->second)),
-                   fmt::format("looked for in {}", fmt::join(search_folders(folder), ", ")));
-    return nullptr;
-  }
+  const auto file = find_named_file(name->second, place, findings);
+  if (!file) return nullptr;
   const std::size_t finding_count = findings.all().size();
   auto cloud = read_cloud({*file, format->second, osa_axes}, findings);
   if (findings.all().size() > finding_count) findings.note(place, "named here");
@@ -80,14 +77,30 @@ std::shared_ptr<const PointCloud> read_points(const std::string& key, const std:
 
 }  // namespace
 
-Shape read_shape(const ShapeKind& kind, const YamlNode& node, const std::string& folder, Findings& findings) {
+Shape read_shape(const ShapeKind& kind, const YamlNode& node, Findings& findings) {
   const Section section(node, std::string(kind.name), kind.keys, findings);
   Shape shape{.kind = std::string(kind.name), .parameters = {}, .cloud = nullptr, .place = node.place};
   for (const Key& key : kind.keys) read_value(section, key, shape.parameters);
   for (const Key& key : kind.keys)
     if (key.kind == ValueKind::file)
-      shape.cloud = read_points(std::string(key.name), folder, shape.parameters, findings);
+      shape.cloud = read_points(std::string(key.name), shape.parameters, findings);
   return shape;
+}
+
+Shape make_shape(std::string_view kind, const std::vector<std::pair<std::string, std::string>>& values, const Place& place,
+                 Findings& findings) {
+  YamlNode node;
+  node.kind = YamlNode::Kind::mapping;
+  node.place = place;
+  for (const auto& [key, text] : values) {
+    auto value = std::make_shared<YamlNode>();
+    value->kind = YamlNode::Kind::scalar;
+    value->place = place;
+    value->text = text;
+    node.entries.push_back({key, place, std::move(value)});
+  }
+  const auto found = std::find_if(shape_kinds().begin(), shape_kinds().end(), [&](const ShapeKind& one) { return one.name == kind; });
+  return read_shape(*found, node, findings);
 }
 
 }  // namespace sagitta::prescription

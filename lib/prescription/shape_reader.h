@@ -3,6 +3,9 @@
 #pragma once
 
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "lib/prescription/diagnostics.h"
 #include "lib/prescription/keys.h"
@@ -11,7 +14,11 @@
 
 namespace sagitta::prescription {
 
-// `folder` is the folder of the prescription, where the files it names are looked for first.
-Shape read_shape(const ShapeKind& kind, const YamlNode& node, const std::string& folder, Findings& findings);
+// A file that the shape names is looked for first beside the file in which the name stands.
+Shape read_shape(const ShapeKind& kind, const YamlNode& node, Findings& findings);
+
+// A shape that is asked for outside a prescription, by keys and texts: as if it stood at `place` in one.
+Shape make_shape(std::string_view kind, const std::vector<std::pair<std::string, std::string>>& values, const Place& place,
+                 Findings& findings);
 
 }  // namespace sagitta::prescription

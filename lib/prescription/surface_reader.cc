@@ -41,12 +41,12 @@ Vec3<double> read_vector(const Section& section, std::string_view key, Findings&
   return xyz ? Vec3<double>{(*xyz)[0], (*xyz)[1], (*xyz)[2]} : Vec3<double>{};
 }
 
-Shape read_shape_of(const Section& section, const std::string& folder, Findings& findings) {
+Shape read_shape_of(const Section& section, Findings& findings) {
   const YamlNode::Entry* given = section.one_of(shape_names(), false);
   if (!given) return {.kind = "plane", .parameters = {}, .cloud = nullptr, .place = section.place()};
   const auto kind = std::find_if(shape_kinds().begin(), shape_kinds().end(),
                                  [&](const ShapeKind& one) { return one.name == given->key; });
-  return read_shape(*kind, *given->value, folder, findings);
+  return read_shape(*kind, *given->value, findings);
 }
 
 void check_thickness(const Section& section, const Surface& surface, bool is_last, Findings& findings) {
@@ -61,12 +61,11 @@ void check_thickness(const Section& section, const Surface& surface, bool is_las
         "the last surface is the image surface: nothing follows it");
 }
 
-Surface read_surface(const Section& section, bool is_last, const std::string& folder, MediumReader& media,
-                     Findings& findings) {
+Surface read_surface(const Section& section, bool is_last, MediumReader& media, Findings& findings) {
   Surface surface;
   surface.place = section.place();
   surface.name = section.text("name").value_or("");
-  surface.shape = read_shape_of(section, folder, findings);
+  surface.shape = read_shape_of(section, findings);
   surface.stop = section.flag("stop").value_or(false);
   surface.thickness_mm = section.number("thickness_mm").value_or(0);
   check_thickness(section, surface, is_last, findings);
@@ -92,8 +91,7 @@ Surface read_surface(const Section& section, bool is_last, const std::string& fo
 
 }  // namespace
 
-std::vector<Surface> read_surfaces(const YamlNode& list, const std::string& folder, MediumReader& media,
-                                   Findings& findings) {
+std::vector<Surface> read_surfaces(const YamlNode& list, MediumReader& media, Findings& findings) {
   std::vector<Surface> surfaces;
   if (list.kind != YamlNode::Kind::sequence || list.items.size() < 2) {
     refuse(list, "surfaces", "a list of at least 2, the last one being the image surface", findings);
@@ -112,7 +110,7 @@ std::vector<Surface> read_surfaces(const YamlNode& list, const std::string& fold
     all_stops_known = all_stops_known && node.kind == YamlNode::Kind::mapping &&
                       (!stop || stop->text == "true" || stop->text == "false");
     if (node.kind != YamlNode::Kind::mapping) continue;
-    surfaces.push_back(read_surface(section, number == list.items.size(), folder, media, findings));
+    surfaces.push_back(read_surface(section, number == list.items.size(), media, findings));
     if (surfaces.back().stop) stops.push_back({number, stop->place});
   }
   if (stops.empty() && all_stops_known)

@@ -12,8 +12,7 @@
 namespace sagitta::prescription {
 
 // The list `surfaces`, with the rules that hold between its surfaces: at least two, exactly one stop, a thickness on
-// all but the last. `folder` is the folder of the prescription.
-std::vector<Surface> read_surfaces(const YamlNode& list, const std::string& folder, MediumReader& media,
-                                   Findings& findings);
+// all but the last.
+std::vector<Surface> read_surfaces(const YamlNode& list, MediumReader& media, Findings& findings);
 
 }  // namespace sagitta::prescription

@@ -124,12 +124,7 @@ std::optional<std::string> read_text(const YamlNode& node, const std::string& la
     text.erase(text.find_last_not_of(' ') + 1);
     return text;
   }
-  std::vector<std::string> names;
-  for (std::size_t start = 0; start <= choices.size();) {
-    const std::size_t end = std::min(choices.find('|', start), choices.size());
-    names.emplace_back(choices.substr(start, end - start));
-    start = end + 1;
-  }
+  const std::vector<std::string> names = numerics::words_of(choices);
   if (node.kind == YamlNode::Kind::scalar && std::find(names.begin(), names.end(), node.text) != names.end())
     return node.text;
   const std::string meant = node.kind == YamlNode::Kind::scalar ? nearest_name(node.text, names) : "";

@@ -1,55 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lib/scene/cloud_fit.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 
+#include "lib/scene/least_squares_internal.h"
+
 namespace sagitta::scene {
 namespace {
 
 using numerics::Vec3;
-
-// Least squares in bounded memory: rows are added in blocks, each block reduced with what came before to a triangle.
-class LeastSquares {
- public:
-  explicit LeastSquares(Eigen::Index terms) : terms_(terms), block_(Eigen::MatrixXd::Zero(block_rows, terms + 1)) {}
-
-  // The next row, to be filled: `terms` values and the right side.
-  auto next_row() {
-    if (filled_ == block_rows) reduce();
-    return block_.row(filled_++);
-  }
-
-  // None unless the rows determine every coefficient: to 1e-6 of the largest one after scaling of the columns.
-  std::optional<Eigen::VectorXd> solve() {
-    if (filled_ < terms_) return std::nullopt;
-    Eigen::MatrixXd matrix = block_.topLeftCorner(filled_, terms_);
-    const Eigen::VectorXd scale = matrix.colwise().norm().cwiseMax(std::numeric_limits<double>::min()).cwiseInverse();
-    matrix = matrix * scale.asDiagonal();
-    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(matrix);
-    qr.setThreshold(1e-6);
-    if (qr.rank() < terms_) return std::nullopt;
-    Eigen::VectorXd solution = scale.asDiagonal() * qr.solve(block_.col(terms_).head(filled_));
-    if (!solution.allFinite()) return std::nullopt;
-    return solution;
-  }
-
- private:
-  static constexpr Eigen::Index block_rows = 512;
-
-  void reduce() {
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(block_.topRows(filled_));
-    const Eigen::Index kept = terms_ + 1;
-    block_.topRows(kept) = qr.matrixQR().topRows(kept).triangularView<Eigen::Upper>();
-    filled_ = kept;
-  }
-
-  Eigen::Index terms_, filled_ = 0;
-  Eigen::MatrixXd block_;
-};
 
 // y-z second derivative at the origin of the fitted polynomial in (x, y) of the given degree.
 template <class Indices>

@@ -54,7 +54,7 @@ struct Errors {
   double sag = 0, slope = 0;  // rms against the exact surface, mm and 1
 };
 Errors errors_of(const Triangulation& made, const Height& exact, double radius) {
-  const auto patches = fit_patches(made.mesh->mesh);
+  const auto patches = fit_patches(made.mesh->mesh).patches;
   const surface::Patches c1{{&made.mesh->mesh}, patches.data()};
   Errors sums;
   int count = 0;
@@ -248,7 +248,7 @@ TEST(Smoothing, brings_back_the_synthetic_corneas) {
     const auto clean = read(name + "_clean.csv"), measured = read(name + "_noisy.csv");
     ASSERT_TRUE(clean && measured);
     const Triangulation exact_mesh = triangulate(*clean);
-    const auto patches = fit_patches(exact_mesh.mesh->mesh);
+    const auto patches = fit_patches(exact_mesh.mesh->mesh).patches;
     const surface::Patches exact{{&exact_mesh.mesh->mesh}, patches.data()};
     const auto sag = [&](double x, double y) { return exact.sag(x, y); };
     double squares = 0;

@@ -17,18 +17,11 @@ namespace sagitta::tests {
 using numerics::Vec3;
 using Real = long double;
 
-// The vertices of a facet, wherever the mesh keeps them.
-template <class Mesh>
-std::array<std::uint32_t, 3> corners_of(const Mesh& mesh, std::uint32_t facet) {
-  if constexpr (requires { mesh.corners; }) return mesh.corners[facet];
-  else return {mesh.facets[facet].corner[0], mesh.facets[facet].corner[1], mesh.facets[facet].corner[2]};
-}
-
 // The edges that have a facet on one side only.
 inline std::vector<std::array<std::uint32_t, 2>> rim_edges(const surface::Mesh& mesh) {
   std::vector<std::array<std::uint32_t, 2>> edges;
   for (std::uint32_t f = 0; f < mesh.facet_count; ++f) {
-    const auto corner = corners_of(mesh, f);
+    const auto corner = mesh.corners[f];
     for (std::size_t i = 0; i < 3; ++i)
       if (mesh.facets[f].neighbour[i] == surface::no_facet) edges.push_back({corner[(i + 1) % 3], corner[(i + 2) % 3]});
   }
@@ -110,7 +103,7 @@ class AllFacets {
   }
 
   std::array<Vec3<double>, 3> vertices(std::uint32_t facet) const {
-    const auto corner = corners_of(mesh_, facet);
+    const auto corner = mesh_.corners[facet];
     return {mesh_.vertices[corner[0]], mesh_.vertices[corner[1]], mesh_.vertices[corner[2]]};
   }
 

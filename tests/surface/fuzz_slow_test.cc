@@ -227,7 +227,7 @@ void try_cloud(std::uint64_t seed, Tally& tally) {
   const int rings = static_cast<int>(seed / 4 % 6);
   switch (seed % 4) {
     case 0: {
-      const auto patches = scene::fit_patches(*facets.mesh);
+      const auto patches = scene::fit_patches(*facets.mesh).patches;
       send_rays(Patches{facets, patches.data()}, *facets.mesh, extent, seed, tally);
       break;
     }

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// One surface of a system made from one point cloud in several ways: what `sagitta compare --surface` compares.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lib/output/comparison.h"
+#include "lib/prescription/model.h"
+
+namespace sagitta::tools {
+
+// "delaunay" (interpolation c1), "delaunay:INTERPOLATION" or "zernike:TERMS".
+struct VariantKind {
+  std::string text;           // as given
+  std::string interpolation;  // of points; "": a Zernike surface is fitted
+  int terms = 0;
+};
+struct ParsedVariant {
+  std::optional<VariantKind> kind;
+  std::string fault;  // why there is none
+};
+ParsedVariant parse_variant(const std::string& text);
+
+struct VariantRequest {
+  std::string surface;               // its name in the system
+  std::string points, format, axes;  // as in the prescription
+  std::vector<VariantKind> kinds;
+  std::optional<double> radius_mm;   // of the Zernike fits
+};
+
+// A system to compare, under a name of its own.
+struct ComparedModel {
+  std::string name;
+  prescription::Model model;
+  std::optional<output::FitQuality> fit;
+};
+
+// Where the beam of the system meets its surface `number` (traced, all fields and wavelengths): the greatest distance from
+// the surface's axis, mm. None where no ray gets there.
+std::optional<double> footprint_radius(const prescription::Model& model, int number);
+
+// The Zernike fits are over the circle of `radius_mm`, or else over the beam's footprint on the system's own surface and
+// 5 % more, as far as the data reach. Empty, after printing what is wrong, where one cannot be made.
+std::vector<ComparedModel> make_variants(const prescription::Model& system, const VariantRequest& request);
+
+}  // namespace sagitta::tools

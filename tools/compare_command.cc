@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+// sagitta compare A.yaml B.yaml -o DIR: several systems by the rays of the first.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "lib/output/atomic_file.h"
+#include "lib/output/comparison.h"
+#include "tools/cloud_variants.h"
+#include "tools/commands.h"
+#include "tools/job_report.h"
+#include "tools/load.h"
+#include "tools/write.h"
+
+namespace sagitta::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using prescription::Model;
+
+// Several of one name get the name of their file as well, and what is still the same a number.
+void make_names_unique(std::vector<ComparedModel>& models) {
+  std::map<std::string, int> bearers;
+  for (const ComparedModel& one : models) ++bearers[one.name];
+  std::set<std::string> taken;
+  for (ComparedModel& one : models) {
+    if (bearers[one.name] > 1) one.name += fmt::format(" ({})", fs::path(one.model.file).stem().string());
+    const std::string base = one.name;
+    for (int number = 2; !taken.insert(one.name).second; ++number) one.name = fmt::format("{} {}", base, number);
+  }
+}
+
+std::vector<std::string> unique_slugs(const std::vector<ComparedModel>& models) {
+  std::vector<std::string> slugs;
+  std::set<std::string> taken;
+  for (const ComparedModel& one : models) {
+    const std::string base = output::slug_of(one.name);
+    std::string slug = base;
+    for (int number = 2; !taken.insert(slug).second; ++number) slug = fmt::format("{}-{}", base, number);
+    slugs.push_back(std::move(slug));
+  }
+  return slugs;
+}
+
+std::vector<ComparedModel> load_models(const std::vector<std::string>& files) {
+  std::vector<ComparedModel> models;
+  for (const std::string& file : files)
+    if (auto model = load_model(file))
+      models.push_back({model->name.empty() ? fs::path(file).stem().string() : model->name, *std::move(model), std::nullopt});
+  return models.size() == files.size() ? models : std::vector<ComparedModel>{};
+}
+
+// Wavelengths, fields, object and beam of the first; false, with a message, where a medium does not reach so far.
+bool take_rays_of(const Model& first, const scene::LaunchPupil& pupil, Model& model) {
+  std::vector<double> needed = first.wavelengths_nm;
+  needed.push_back(first.primary_wavelength_nm());
+  if (!set_wavelengths(model, needed, fmt::format("compare: {}, by the rays of {}", model.file, first.file))) return false;
+  model.wavelengths_nm = first.wavelengths_nm;
+  model.primary_nm = first.primary_nm;
+  model.fields = first.fields;
+  model.object.distance_mm = first.object.distance_mm;
+  model.aperture.kind = first.aperture.kind;
+  model.aperture.value = first.aperture.value;
+  if (!pupil.telecentric) {
+    model.aperture.kind = prescription::ApertureKind::entrance_pupil_diameter_mm;
+    model.aperture.value = 2 * pupil.semi_diameter;
+  }
+  return true;
+}
+
+struct CompiledSystems {
+  std::vector<output::Report> reports;
+  std::vector<scene::Scene> scenes;  // as many, or fewer where one could not be compiled
+};
+
+CompiledSystems compile_all(std::vector<ComparedModel>& models) {
+  CompiledSystems result;
+  for (ComparedModel& one : models) {
+    const bool is_first = &one == &models.front();
+    if (!is_first && !take_rays_of(models.front().model, result.scenes.front().pupil, one.model)) continue;
+    auto compiled = load_scene(one.model);
+    if (!compiled && is_first) break;
+    if (!compiled) continue;
+    result.reports.push_back(make_report(one.model, *compiled));
+    result.reports.back().system = one.name;
+    result.scenes.push_back(*std::move(compiled->scene));
+    result.scenes.back().pupil = result.scenes.front().pupil;
+  }
+  return result;
+}
+
+output::Comparison compare(const std::vector<ComparedModel>& models, CompiledSystems compiled, const analysis::JobRequest& request) {
+  output::Comparison comparison;
+  auto& [reports, scenes] = compiled;
+  const auto results = run_with_progress(scenes, request);
+  const std::vector<std::string> slugs = unique_slugs(models);
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    reports[i].results = results[i];
+    comparison.systems.push_back({std::move(reports[i]), slugs[i], models[i].fit, analysis::differences(results[i], results.front())});
+  }
+  const Model& first = models.front().model;
+  const auto primary = std::find(first.wavelengths_nm.begin(), first.wavelengths_nm.end(), first.primary_wavelength_nm());
+  if (primary != first.wavelengths_nm.end()) comparison.primary = static_cast<std::size_t>(primary - first.wavelengths_nm.begin());
+  return comparison;
+}
+
+bool write_all(const fs::path& folder, const output::Comparison& comparison, const std::string& summary) {
+  const std::vector<output::Figure> figures = sheets(comparison);
+  bool all_written = write_image("compare", folder / "comparison", parts(comparison), figures.front());
+  for (std::size_t field = 1; field < figures.size(); ++field)
+    all_written &= written("compare", output::write_png((folder / fmt::format("comparison.field{}.png", field)).string(), render(figures[field])));
+  return written("compare", output::write_file((folder / "summary.json").string(), summary)) && all_written;
+}
+
+constexpr std::size_t most_systems = 16;  // rows of a sheet
+
+bool is_well_used(const CompareOptions& options, std::vector<VariantKind>& kinds) {
+  const auto refuse = [](const std::string& what) {
+    fmt::print(stderr, "sagitta compare: {}\n", what);
+    return false;
+  };
+  if (std::max(options.systems.size(), options.as.size()) > most_systems)
+    return refuse(fmt::format("at most {} systems are compared", most_systems));
+  if (options.surface.empty())
+    return options.systems.size() >= 2 || refuse("two systems or more are compared; with --surface, --with and --as, variants of one");
+  if (options.systems.size() > 1) return refuse("--surface takes one system");
+  if (options.as.size() < 2) return refuse("--as: give two ways or more, such as delaunay,zernike:36");
+  for (const std::string& text : options.as) {
+    ParsedVariant parsed = parse_variant(text);
+    if (!parsed.kind) return refuse(fmt::format("--as {}: {}", text, parsed.fault));
+    kinds.push_back(*std::move(parsed.kind));
+  }
+  return true;
+}
+
+}  // namespace
+
+int compare_command(const CompareOptions& options) {
+  auto request = make_request("compare", options);
+  if (!request) return 2;
+  std::vector<VariantKind> kinds;
+  if (!is_well_used(options, kinds)) return 2;
+
+  std::vector<ComparedModel> models = load_models(options.systems);
+  if (models.empty()) return 1;
+  std::string title;
+  if (!kinds.empty()) {
+    title = fmt::format("{}, {} from {}", models.front().name, options.surface, fs::path(options.points).filename().string());
+    models = make_variants(models.front().model, {options.surface, options.points, options.format, options.axes, kinds, options.radius_mm});
+    if (models.empty()) return 1;
+  }
+  make_names_unique(models);
+  if (title.empty()) title = fmt::format("{} systems by the rays of {}", models.size(), models.front().name);
+
+  request->spot_image_size = 512;  // sheets show the middle of it
+  CompiledSystems compiled = compile_all(models);
+  if (compiled.scenes.size() < models.size()) return 1;
+  const fs::path folder(options.folder);
+  if (!make_folder("compare", folder)) return 1;
+  output::Comparison comparison = compare(models, std::move(compiled), *request);
+  comparison.title = title;
+
+  const std::string summary = summary_json(comparison);
+  const bool all_written = write_all(folder, comparison, summary);
+  fmt::print("{}", options.json ? summary : summary_text(comparison));
+  bool all_arrived = true;
+  for (const output::ComparedSystem& system : comparison.systems) {
+    const auto& results = system.report.results;
+    if (std::any_of(results.begin(), results.end(), [](const auto& one) { return one.rays[surface::Status::ok] > 0; })) continue;
+    fmt::print(stderr, "sagitta compare: not one ray arrived at the image surface of {}\n", system.report.system);
+    all_arrived = false;
+  }
+  return all_written && all_arrived ? 0 : 1;
+}
+
+}  // namespace sagitta::tools

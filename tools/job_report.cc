@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/job_report.h"
+
+#include <fmt/core.h>
+
+#include <filesystem>
+
+#include "lib/output/progress.h"
+
+namespace sagitta::tools {
+
+std::optional<analysis::JobRequest> make_request(const char* command, const JobOptions& options) {
+  const auto pattern = trace::parse_pattern(options.pattern);
+  if (!pattern) {
+    fmt::print(stderr, "sagitta {}: --pattern {}: expected hexapolar, square, random:SEED, fan_x or fan_y\n", command, options.pattern);
+    return std::nullopt;
+  }
+  analysis::JobRequest request;
+  request.pattern = *pattern;
+  request.ray_count = options.ray_count;
+  request.thread_count = options.thread_count;
+  return request;
+}
+
+output::Report make_report(const prescription::Model& model, const scene::CompileResult& compiled) {
+  output::Report report;
+  report.system = model.name.empty() ? std::filesystem::path(model.file).stem().string() : model.name;
+  report.version = SAGITTA_VERSION;
+  report.fields_are_heights = model.fields.kind == prescription::FieldKind::object_heights_mm;
+  for (const auto& field : model.fields.points) report.fields.push_back({field.x, field.y});
+  report.wavelengths_nm = model.wavelengths_nm;
+  for (const auto& surface : model.surfaces) {
+    report.surface_names.push_back(surface.name);
+    const auto& texts = surface.shape.parameters.texts;
+    const auto interpolation = texts.find("interpolation");
+    if (interpolation != texts.end() && interpolation->second == "linear")
+      report.surfaces_of_flat_facets.push_back(static_cast<int>(report.surface_names.size()));
+  }
+  report.first_order = compiled.first_order;
+  report.smoothing = compiled.smoothing;
+  return report;
+}
+
+std::vector<std::vector<analysis::JobResult>> run_with_progress(std::span<const scene::Scene> scenes, const analysis::JobRequest& request) {
+  constexpr std::uint64_t steps = 1000;
+  output::Progress line("tracing", steps);
+  std::uint64_t shown = 0;
+  return analysis::run_jobs(scenes, request, [&](double share) {
+    const auto reached = static_cast<std::uint64_t>(share * steps);
+    line.advance(reached - shown);
+    shown = reached;
+  });
+}
+
+}  // namespace sagitta::tools

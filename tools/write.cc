@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/write.h"
+
+#include <fmt/core.h>
+
+#include "lib/output/raster.h"
+
+namespace sagitta::tools {
+
+bool make_folder(const char* command, const std::filesystem::path& folder) {
+  if (folder.empty()) return true;
+  std::error_code fault;
+  std::filesystem::create_directories(folder, fault);
+  if (std::filesystem::is_directory(folder)) return true;
+  fmt::print(stderr, "sagitta {}: {}: the output folder cannot be made: {}\n", command, folder.string(), fault.message());
+  return false;
+}
+
+bool written(const char* command, const output::WriteResult& result) {
+  if (!result.ok()) fmt::print(stderr, "sagitta {}: {}\n", command, result.error);
+  return result.ok();
+}
+
+bool write_image(const char* command, const std::filesystem::path& base, std::vector<output::ExrPart> parts, const output::Figure& figure) {
+  const output::Raster picture = output::render(figure);
+  parts.insert(parts.begin(), output::preview_part(picture));
+  return written(command, output::write_exr(base.string() + ".exr", parts)) && written(command, output::write_png(base.string() + ".png", picture));
+}
+
+}  // namespace sagitta::tools

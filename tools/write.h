@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// What commands with output files end with. Each says on standard error what could not be written.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "lib/output/exr.h"
+#include "lib/output/figure.h"
+
+namespace sagitta::tools {
+
+// Makes the folder and those above it, "" being the working folder; true if it is there. `command` is named in the message.
+bool make_folder(const char* command, const std::filesystem::path& folder);
+
+// True if it was written.
+bool written(const char* command, const output::WriteResult& result);
+
+// BASE.exr, the figure as its preview before the parts, and BASE.png.
+bool write_image(const char* command, const std::filesystem::path& base, std::vector<output::ExrPart> parts, const output::Figure& figure);
+
+}  // namespace sagitta::tools
