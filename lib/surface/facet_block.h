@@ -100,8 +100,9 @@ struct FacetsOfBlock {
       __builtin_prefetch(facets + walks[i].at);
       return true;
     }
-    if (walks[i].at != no_facet)
-      arrive(i, walks[i].at, path_to(mesh, walks[i].at, line));
+    const double path = walks[i].at == no_facet ? 0 : path_to(mesh, walks[i].at, line);
+    if (walks[i].at != no_facet && is_near(path, extent))
+      arrive(i, walks[i].at, path);
     else
       lost[lost_count++] = static_cast<std::int16_t>(i);
     return false;
@@ -124,9 +125,12 @@ struct FacetsOfBlock {
       return false;
     });
   for (int k = 0; k < lost_count; ++k) {
-    const AimedLine<double> line = line_of(lines, found, lost[k]);
-    const std::uint32_t facet = search(mesh, line, [] {});
-    if (facet != no_facet) arrive(lost[k], facet, path_to(mesh, facet, line));
+    const int i = lost[k];
+    AimedLine<double> line = line_of(lines, found, i);
+    const auto [facet, path] = locate(mesh, line, [] {});
+    if (facet == no_facet) continue;
+    found.o.x[i] = line.o.x, found.o.y[i] = line.o.y, found.o.z[i] = line.o.z, found.o.path[i] = line.path;
+    arrive(i, facet, path);
   }
 }
 

@@ -27,8 +27,8 @@
 //
 // The guard. Stored floats are off by 2^-24 of themselves, the place (x, y) by 2^-24 of the extent E; X - x is below 2 E. So
 // a weight is known to 2^-22 E (|u_x| + |u_y| + |v_x| + |v_y|), the guard of a facet, with room for half as much. The
-// rounding of (1) needs less than that room while |t| <= 8 E and along > 2^-20 (1 + |slope_x| + |slope_y|): beyond these
-// the exact test decides.
+// rounding of (1) needs less than that room while t is short (2^-6 E) and along > 2^-20 (1 + |slope_x| + |slope_y|):
+// beyond these the exact test decides.
 //
 // Source: walks: Devillers, Pion and Teillaud, Int. J. Found. Comput. Sci. 13, 181 (2002). The watertight test: Woop, Benthin
 // and Wald, J. Comput. Graph. Tech. 2, 65 (2013), with a rotation (Duff et al., J. Comput. Graph. Tech. 6, 1 (2017)) in
@@ -64,6 +64,13 @@ template <class T>
   return {middle + near * d, d, to_middle + near};
 }
 
+// Whether a path from o is short, as it is where the prediction was good.
+template <class T>
+[[gnu::always_inline]] inline bool is_near(const T& path, const T& extent) {
+  using std::abs;
+  return abs(path) <= T(0x1p-6) * extent;
+}
+
 enum class Verdict : std::int32_t { beyond_0, beyond_1, beyond_2, inside, near_edge, grazing };
 
 // (1): where the line meets the plane of a facet, and what the weights say.
@@ -86,7 +93,7 @@ template <class T>
   const Verdict beyond = least == w0 ? Verdict::beyond_0 : least == w1 ? Verdict::beyond_1 : Verdict::beyond_2;
   const T forward = line.d.z < T(0) ? -along : along;
   const T guard(facet.guard);
-  const bool sound = (forward > T(0x1p-20) * (T(1) + abs(slope_x) + abs(slope_y))) & (abs(path) <= T(8) * extent);
+  const bool sound = (forward > T(0x1p-20) * (T(1) + abs(slope_x) + abs(slope_y))) & is_near(path, extent);
   const Verdict verdict = !sound           ? Verdict::grazing
                           : least > guard  ? Verdict::inside
                           : least < -guard ? beyond
@@ -102,14 +109,6 @@ struct Weighed {
 
   int least() const { return w[0] < w[1] ? (w[0] < w[2] ? 0 : 2) : (w[1] < w[2] ? 1 : 2); }
   bool inside() const { return w[0] >= T(0) && w[1] >= T(0) && w[2] >= T(0) && w[0] + w[1] + w[2] > T(0); }
-
-  // The mean of a quantity of the vertices, weighed.
-  template <class Quantity>
-  T between(Quantity&& quantity, const Mesh& mesh) const {
-    const auto at = [&](std::size_t i) { return quantity(numerics::vec3_cast<T>(mesh.vertices[mesh.corners[facet][i]] - mesh.centre)); };
-    const T at0 = at(0);
-    return at0 + (w[1] * (at(1) - at0) + w[2] * (at(2) - at0)) / (w[0] + w[1] + w[2]);
-  }
 };
 
 // What is seen along a line.
@@ -155,15 +154,24 @@ std::uint32_t lowest_of_touching(const Mesh& mesh, const View<T>& view, const We
   return lowest;
 }
 
-// The path from o to a facet that the line meets: by its plane, or where that is nearly parallel to the line, by the
-// weights, which give a point of the facet at any incidence.
+// The path from o to a facet that the line meets: to its plane. Where that is nearly parallel to the line, or the facet so
+// thin that its plane says little, the path is kept between those at which the line comes over the facet and leaves it.
 template <class T>
 T path_to(const Mesh& mesh, std::uint32_t facet, const AimedLine<T>& line) {
   const Judgement<T> judged = judge(mesh.facets[facet], line, T(mesh.extent));
   if (judged.verdict != Verdict::grazing) return judged.path;
-  const Weighed<T> weighed = View<T>(line).weigh(mesh, facet);
-  if (!weighed.inside()) return judged.path;
-  return weighed.between([&](const Vec3<T>& v) { return dot(v - line.o, line.d); }, mesh);
+  const auto corner = [&](int i) { return numerics::vec3_cast<T>(mesh.vertices[mesh.corners[facet][i % 3]] - mesh.centre); };
+  const T infinity = std::numeric_limits<T>::infinity();
+  T first = -infinity, last = infinity;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3<T> from = corner(i), edge = corner(i + 1) - from, to_o = line.o - from;
+    const T inside = edge.x * to_o.y - edge.y * to_o.x, inward = edge.x * line.d.y - edge.y * line.d.x;
+    if (inward > T(0) && first < -inside / inward) first = -inside / inward;
+    if (inward < T(0) && last > -inside / inward) last = -inside / inward;
+  }
+  if (!(first <= last)) return (first + last) / T(2);  // rounding has turned a thin facet inside out
+  if (!(judged.path >= first)) return first > -infinity ? first : T(0);
+  return judged.path <= last ? judged.path : last;
 }
 
 // All facets that the line may meet, by the tree of boxes: of those it passes through, the one whose crossing is nearest
@@ -196,7 +204,7 @@ std::uint32_t search(const Mesh& mesh, const AimedLine<T>& line, Visited&& visit
       visited();
       const Weighed<T> facet = view.weigh(mesh, f);
       if (!facet.inside()) continue;
-      const T path = facet.between([&](const Vec3<T>& v) { return dot(v - line.o, line.d); }, mesh);
+      const T path = path_to(mesh, f, line);
       const T distance = path < T(0) ? -path : path;
       if (nearest != no_facet && !(distance < least_distance)) continue;
       nearest = f;
@@ -270,15 +278,29 @@ bool go_on(const Mesh& mesh, const AimedLine<T>& line, const Judgement<T>& judge
   return walk.at == no_facet;
 }
 
-// The facet that the line meets; no_facet where it meets none. `visited` is called once for every facet that is tested.
+// The facet that the line meets, and the path to it from o.
+template <class T>
+struct Located {
+  std::uint32_t facet = no_facet;  // no_facet: none is met
+  T path{};
+};
+// `visited` is called once for every facet that is tested. Where o proves to be far from the facet, it is moved there, and
+// all is done once more: what is seen from afar is rounded.
 template <class T, class Visited>
-std::uint32_t locate(const Mesh& mesh, const AimedLine<T>& line, Visited&& visited) {
-  Walk walk{mesh.grid.facet_near(double(line.o.x), double(line.o.y))};
-  while (walk.at != no_facet) {
-    visited();
-    if (go_on(mesh, line, judge(mesh.facets[walk.at], line, T(mesh.extent)), walk)) break;
+Located<T> locate(const Mesh& mesh, AimedLine<T>& line, Visited&& visited) {
+  for (int aims = 1;; ++aims) {
+    Walk walk{mesh.grid.facet_near(double(line.o.x), double(line.o.y))};
+    while (walk.at != no_facet) {
+      visited();
+      if (go_on(mesh, line, judge(mesh.facets[walk.at], line, T(mesh.extent)), walk)) break;
+    }
+    const std::uint32_t facet = walk.at != no_facet ? walk.at : search(mesh, line, visited);
+    if (facet == no_facet) return {};
+    const T path = path_to(mesh, facet, line);
+    if (is_near(path, T(mesh.extent)) || aims == 2) return {facet, path};
+    line.o = line.o + path * line.d;
+    line.path = line.path + path;
   }
-  return walk.at != no_facet ? walk.at : search(mesh, line, visited);
 }
 
 }  // namespace sagitta::surface

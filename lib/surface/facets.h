@@ -44,7 +44,8 @@ struct Facets {
   // The facet at (x, y); no_facet where there is none.
   template <class T>
   std::uint32_t facet_at(const T& x, const T& y) const {
-    return locate(*mesh, vertical(x, y), [] {});
+    AimedLine<T> line = vertical(x, y);
+    return locate(*mesh, line, [] {}).facet;
   }
   bool covers(double x, double y) const { return facet_at(x, y) != no_facet; }
 
@@ -85,13 +86,9 @@ struct Facets {
   // `visited` is called once for every facet that is tested.
   template <class T, class Visited = NotCounted>
   Hit<T> find(const Vec3<T>& start, const Vec3<T>& d, Visited&& visited = {}) const {
-    const AimedLine<T> line = aim(*mesh, start, d);
-    const std::uint32_t facet = locate(*mesh, line, visited);
-    return facet == no_facet ? Hit<T>{} : hit_on(facet, line);
-  }
-  template <class T>
-  Hit<T> hit_on(std::uint32_t facet, const AimedLine<T>& line) const {
-    const T path = path_to(*mesh, facet, line);
+    AimedLine<T> line = aim(*mesh, start, d);
+    const auto [facet, path] = locate(*mesh, line, visited);
+    if (facet == no_facet) return {};
     return {facet, line.path + path, numerics::vec3_cast<T>(mesh->centre) + (line.o + path * line.d)};
   }
 
@@ -126,7 +123,7 @@ struct Facets {
  private:
   template <class T>
   AimedLine<T> vertical(const T& x, const T& y) const {
-    return {{x - T(mesh->centre.x), y - T(mesh->centre.y), T(0)}, {T(0), T(0), T(1)}, T(0)};
+    return aim(*mesh, Vec3<T>{x, y, T(mesh->centre.z)}, Vec3<T>{T(0), T(0), T(1)});
   }
 };
 

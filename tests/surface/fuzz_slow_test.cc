@@ -131,7 +131,7 @@ struct Aim {
   V start, d;
 };
 Aim aim(const Mesh& mesh, Uniform& u) {
-  const auto corner = corners_of(mesh, static_cast<std::uint32_t>(one_of(u, static_cast<int>(mesh.facet_count))));
+  const auto corner = mesh.corners[static_cast<std::uint32_t>(one_of(u, static_cast<int>(mesh.facet_count)))];
   const double s = one_of(u, 4) ? u() : u(-1, 2), t = one_of(u, 4) ? u() * (1 - s) : u(-1, 2);
   const V &a = mesh.vertices[corner[0]], &b = mesh.vertices[corner[1]], &c = mesh.vertices[corner[2]];
   const V target = a + s * (b - a) + t * (c - a);

@@ -130,7 +130,7 @@ TEST_P(LocationByLayout, judges_rays_through_edges_and_vertices) {
     lost += facets.meet(starts.back(), d).status != Status::ok;
   };
   for (std::uint32_t f = 0; f < mesh.facet_count; ++f) {
-    const auto corner = corners_of(mesh, f);
+    const auto corner = mesh.corners[f];
     for (std::size_t i = 0; i < 3; ++i) {
       const std::uint32_t a = corner[i], b = corner[(i + 1) % 3];
       for (const double tilt : tilts) {
