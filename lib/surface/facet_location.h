@@ -5,7 +5,7 @@
 // there, and a walk along the line goes on from it. The line meets the plane of a facet at
 //   t = (z + slope . (O - x) - o_z)/along,   along = d_z - slope . d,   X = o + t d                                (1)
 // and the weights of X (surface/mesh.h) tell whether it is on the facet: yes if all are above the guard, no if one is
-// below minus the guard; then the walk crosses the edge opposite to it or, far from the facet, takes a new one from the
+// below minus the guard; then the walk crosses the edge opposite to it or, where X is far, takes a new facet from the
 // grid at X. Between the two, where floats and the rounding of (1) cannot tell, an exact test decides:
 //
 // Seen along the line, every vertex v is a point of a plane across it,
@@ -251,11 +251,21 @@ struct Walk {
   int steps = 0, leaps = 0;
 };
 
-// One facet further, or to the exact test where the judgement is none. Returns true where the walk has ended: on the facet that is met, or on none.
+// One facet further; an exact test where the judgement does not tell which. Returns true where the walk has ended: on the
+// facet that is met, or on none.
 template <class T>
 bool go_on(const Mesh& mesh, const AimedLine<T>& line, const Judgement<T>& judged, Walk& walk) {
-  int across = static_cast<int>(judged.verdict);
   if (judged.verdict == Verdict::inside) return true;
+  if ((judged.least < T(-3) || !is_near(judged.path, T(mesh.extent))) && walk.leaps < Walk::most_leaps) {
+    // far from here: not across one edge after another, but to the grid's facet there
+    ++walk.leaps;
+    const std::uint32_t there = mesh.grid.facet_near(double(line.o.x + judged.path * line.d.x), double(line.o.y + judged.path * line.d.y));
+    if (there != no_facet && there != walk.at) {
+      walk.at = there;
+      return false;
+    }
+  }
+  int across = static_cast<int>(judged.verdict);
   if (judged.verdict == Verdict::near_edge || judged.verdict == Verdict::grazing) {
     const View<T> view(line);
     const Weighed<T> weighed = view.weigh(mesh, walk.at);
@@ -265,14 +275,6 @@ bool go_on(const Mesh& mesh, const AimedLine<T>& line, const Judgement<T>& judge
     }
     across = weighed.least();
     if (!(weighed.w[across] < T(0))) walk.steps = Walk::most_steps;  // seen edge-on, or not a number: no way on
-  } else if (judged.least < T(-3) && walk.leaps < Walk::most_leaps) {
-    // far from here: not across one edge after another, but to the grid's facet there
-    ++walk.leaps;
-    const std::uint32_t there = mesh.grid.facet_near(double(line.o.x + judged.path * line.d.x), double(line.o.y + judged.path * line.d.y));
-    if (there != no_facet && there != walk.at) {
-      walk.at = there;
-      return false;
-    }
   }
   walk.at = walk.steps++ < Walk::most_steps ? mesh.facets[walk.at].neighbour[across] : no_facet;
   return walk.at == no_facet;
