@@ -256,7 +256,7 @@ struct Walk {
 template <class T>
 bool go_on(const Mesh& mesh, const AimedLine<T>& line, const Judgement<T>& judged, Walk& walk) {
   if (judged.verdict == Verdict::inside) return true;
-  if ((judged.least < T(-3) || !is_near(judged.path, T(mesh.extent))) && walk.leaps < Walk::most_leaps) {
+  if ((judged.least < T(-2) || !is_near(judged.path, T(mesh.extent))) && walk.leaps < Walk::most_leaps) {
     // far from here: not across one edge after another, but to the grid's facet there
     ++walk.leaps;
     const std::uint32_t there = mesh.grid.facet_near(double(line.o.x + judged.path * line.d.x), double(line.o.y + judged.path * line.d.y));

@@ -39,7 +39,7 @@ prescription::Model with_points(prescription::Model eye, PointCloud cloud, const
   prescription::Shape& shape = eye.surfaces.front().shape;
   shape = {};
   shape.kind = "delaunay";
-  shape.parameters.numbers = {{"rings", 2}, {"shape_mm", interpolation.shape_mm}, {"max_edge_mm", std::numeric_limits<double>::infinity()}};
+  shape.parameters.numbers = {{"rings", 2}, {"shape_mm", interpolation.shape_mm}, {"smoothing_um", 0}, {"max_edge_mm", std::numeric_limits<double>::infinity()}};
   shape.parameters.texts = {{"points", cloud.file}, {"format", "xyz"}, {"axes", "local"}, {"interpolation", interpolation.name}};
   shape.cloud = std::make_shared<const PointCloud>(std::move(cloud));
   return eye;
