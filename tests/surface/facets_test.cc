@@ -247,6 +247,22 @@ TEST(Facets, AreMetByRaysThroughTheirVerticesAndEdges) {
   }
 }
 
+// Whichever way a walk comes: part of a cloud must answer as the whole does.
+TEST(Facets, AnswerWithTheLowestNumberOnEdgesAndVertices) {
+  const auto storage = mesh_of(cloud_of(regular_grid(33, 33, 4, 4), [](double x, double y) { return 0.125 * x * x - 0.25 * y; }));  // exact
+  const Mesh& mesh = storage->mesh;
+  const Facets facets{&mesh};
+  std::vector<std::uint32_t> lowest(mesh.vertex_count, no_facet);
+  for (std::uint32_t f = mesh.facet_count; f-- > 0;)
+    for (const std::uint32_t v : mesh.corners[f]) lowest[v] = f;
+  for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) ASSERT_EQ(facets.find(mesh.vertices[v] - V{0, 0, 5}, V{0, 0, 1}).facet, lowest[v]) << v;
+  for (std::uint32_t f = 0; f < mesh.facet_count; ++f)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const V middle = 0.5 * (mesh.vertices[mesh.corners[f][(i + 1) % 3]] + mesh.vertices[mesh.corners[f][(i + 2) % 3]]);
+      ASSERT_EQ(facets.find(middle - V{0, 0, 5}, V{0, 0, 1}).facet, std::min(f, mesh.facets[f].neighbour[i])) << f;
+    }
+}
+
 TEST(Facets, OfAPlaneAreThatPlane) {
   // Dyadic: every difference, product and quotient is exact.
   const auto exact = mesh_of(cloud_of(regular_grid(9, 9, 4, 4), [](double x, double y) { return 0.25 * x - 0.5 * y + 1; }));

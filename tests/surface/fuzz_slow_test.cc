@@ -258,11 +258,12 @@ TEST_P(ManySmallClouds, end_in_a_message_or_in_a_surface) {
 }
 
 // Seeds that found something: predictions by the base sphere far from all data, which cost the hit its digits (35, 163, 634);
-// hits on slivers, some of them in a plane, far along them (58, 227, 806); a point of z 1e9 without a facet (18080, 34126).
+// hits on slivers, some of them in a plane, far along them (58, 227, 806, 326094, 341132, 566578, 773566); a point of z 1e9
+// without a facet (18080, 34126); facets of 1e-9 mm seen from 3e7 mm (247822).
 TEST(SmallClouds, that_once_failed_end_in_a_message_or_in_a_surface) {
   std::signal(SIGALRM, tell_seed_and_end);
   Tally tally;
-  for (const std::uint64_t seed : {35, 58, 163, 227, 634, 806, 18080, 34126}) try_cloud(seed, tally);
+  for (const std::uint64_t seed : {35, 58, 163, 227, 634, 806, 18080, 34126, 247822, 326094, 341132, 566578, 773566}) try_cloud(seed, tally);
   alarm(0);
   EXPECT_EQ(tally.faults, 0);
   EXPECT_EQ(tally.refused, 0);
