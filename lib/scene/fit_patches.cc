@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "lib/numerics/parallel.h"
 #include "lib/scene/cubic_fit.h"
@@ -18,6 +19,8 @@ using surface::Mesh;
 
 constexpr std::size_t block_size = 2048;  // vertices or facets
 constexpr int least_rings = 2;
+constexpr double narrow = 8;                   // longest edge of a vertex over its shortest
+constexpr std::size_t enough_points = 150;     // of many
 constexpr std::size_t most_points = 300;  // where a neighbourhood grows no more
 
 // In the order of their numbers, so that the bits do not depend on the order in which rings reach them. Few are sorted by
@@ -37,7 +40,7 @@ class VertexFits {
  public:
   VertexFits(const Mesh& mesh, const Neighbours& neighbours, const std::vector<char>& is_on_rim, std::vector<CubicFit>& fits,
              std::vector<char>& reaches_rim)
-      : mesh_(mesh), is_on_rim_(is_on_rim), fits_(fits), reaches_rim_(reaches_rim), rings_(neighbours) {}
+      : mesh_(mesh), is_on_rim_(is_on_rim), fits_(fits), reaches_rim_(reaches_rim), neighbours_(neighbours), rings_(neighbours) {}
 
   // From two rings on, with more for those vertices alone that need them.
   void operator()(std::uint32_t begin, std::uint32_t end) {
@@ -62,6 +65,29 @@ class VertexFits {
     }
   }
 
+  double distance(std::uint32_t a, std::uint32_t b) const {
+    return std::hypot(mesh_.vertices[b].x - mesh_.vertices[a].x, mesh_.vertices[b].y - mesh_.vertices[a].y);
+  }
+
+  // Where points stand much nearer to each other along a line than across it, rings are long and narrow: the slope along it
+  // would come from its nearest points alone, with all that the far ones ahead and behind lack of a cubic. Then all points
+  // within the longest edge count, thinned out evenly (their numbers run along a curve).
+  void widen(std::uint32_t vertex) {
+    double shortest = std::numeric_limits<double>::infinity(), longest = 0;
+    for (const std::uint32_t next : neighbours_.of(vertex)) {
+      shortest = std::min(shortest, distance(vertex, next));
+      longest = std::max(longest, distance(vertex, next));
+    }
+    if (!(longest > narrow * shortest)) return;
+    rings_.add_all([&](std::uint32_t next) { return distance(vertex, next) <= longest; });
+  }
+  void thin_out() {
+    const std::size_t stride = 1 + sorted_.size() / enough_points;
+    std::size_t kept = 0;
+    for (std::size_t i = stride / 2; i < sorted_.size(); i += stride) sorted_[kept++] = sorted_[i];
+    sorted_.resize(kept);
+  }
+
   // True if further rings would add nothing that may be taken.
   bool gather(std::uint32_t vertex, int rings, std::size_t lane) {
     rings_.start({vertex});
@@ -72,10 +98,12 @@ class VertexFits {
       const std::size_t now = rings_.vertices().size();
       is_all = now == before || (ring >= least_rings && now >= most_points);
     }
+    widen(vertex);
     sort_by_number(rings_.vertices().subspan(1), sorted_);
-    cubics_.put(lane, mesh_.vertices[vertex], mesh_.vertices, sorted_);
     // (a vertex of the rim has neighbours there)
     reaches_rim_[vertex] = std::any_of(sorted_.begin(), sorted_.end(), [&](std::uint32_t v) { return is_on_rim_[v]; });
+    if (sorted_.size() > most_points) thin_out();
+    cubics_.put(lane, mesh_.vertices[vertex], mesh_.vertices, sorted_);
     return is_all;
   }
 
@@ -83,6 +111,7 @@ class VertexFits {
   const std::vector<char>& is_on_rim_;
   std::vector<CubicFit>& fits_;
   std::vector<char>& reaches_rim_;
+  const Neighbours& neighbours_;
   Rings rings_;
   CubicFits cubics_;
   std::vector<std::uint32_t> waiting_, unfinished_, sorted_;

@@ -2,6 +2,7 @@
 #include "lib/scene/fit_radial.h"
 
 #include <Eigen/LU>
+#include <Eigen/QR>
 #include <cmath>
 
 #include "lib/scene/rings.h"
@@ -71,10 +72,15 @@ RadialFit<function> fit_radial(const surface::Mesh& mesh, const RadialOptions& o
       matrix(i, count + 2) = matrix(count + 2, i) = (p.y - v0.y) / scale;
       right(i) = p.z - v0.z;
     }
-    const Eigen::FullPivLU<Eigen::MatrixXd> lu(matrix);
     Eigen::VectorXd solution = Eigen::VectorXd::Zero(count + 3);
-    const bool solved = count > 3 && lu.isInvertible();
-    if (solved) solution = lu.solve(right);
+    const bool solved = count > 3;
+    if (solved) {
+      const Eigen::FullPivLU<Eigen::MatrixXd> lu(matrix);
+      if (lu.isInvertible())
+        solution = lu.solve(right);
+      else
+        solution = matrix.completeOrthogonalDecomposition().solve(right);
+    }
     typename Patches::Patch patch{static_cast<std::uint32_t>(fit.nodes.size()), 0, v0.x, v0.y, v0.z, mesh.facets[f].slope_x, mesh.facets[f].slope_y};
     if (solved && solution.allFinite()) {
       patch.node_count = static_cast<std::uint32_t>(count);

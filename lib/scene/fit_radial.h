@@ -22,8 +22,10 @@ struct RadialFit {
   double shape_squared = 0;
 };
 
-// (1) and (2) of radial.h, solved by LU with full pivoting after scaling to the size of the neighbourhood. Where the nodes do not determine the
-// interpolant (no known case of distinct points that are not all on a line) the facet stays flat.
+// (1) and (2) of radial.h, solved by LU with full pivoting after scaling to the size of the neighbourhood. The system is
+// singular to rounding where nodes stand much nearer to each other than the shape parameter of a multiquadric, as on a
+// ring near the apex: there the smallest of all solutions is taken (complete orthogonal decomposition), which misses the
+// nodes by rounding of the terms. With no nodes but the corners the facet stays flat.
 template <surface::RadialFunction function>
 RadialFit<function> fit_radial(const surface::Mesh& mesh, const RadialOptions& options);
 

@@ -52,6 +52,13 @@ class Rings {
   void add_ring() {
     for (const std::size_t end = count_; ring_begin_ < end; ++ring_begin_) take(neighbours_.of(vertices_[ring_begin_]));
   }
+  // All that are reached through vertices for which is_near holds.
+  template <class IsNear>
+  void add_all(IsNear&& is_near) {
+    for (; ring_begin_ < count_; ++ring_begin_)
+      for (const std::uint32_t next : neighbours_.of(vertices_[ring_begin_]))
+        if (is_near(next)) take({&next, 1});
+  }
   // In the order in which they were reached, the start first.
   std::span<const std::uint32_t> vertices() const { return {vertices_.data(), count_}; }
 

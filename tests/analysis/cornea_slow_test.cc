@@ -250,17 +250,19 @@ trace::RayBatch traced(const scene::Scene& scene) {
   return rays;
 }
 
-// Optical paths, in waves, to one sphere for both traces: about the exact chief ray's image point, through the middle of the exit
-// pupil; their difference about its mean.
+// Optical paths, in waves, to a sphere about a chief ray's image point, through the middle of the exit pupil; their difference
+// about its mean. The sphere is the exact chief ray's for both traces, or each trace has its own, as the program's wavefronts have:
+// then the slope at the chief ray's hit counts as tilt.
 struct Difference {
   double rms_waves = 0, worst_waves = 0;
 };
-Difference difference(const CompiledScene& eye, const trace::RayBatch& exact, const trace::RayBatch& other) {
+Difference difference(const CompiledScene& eye, const trace::RayBatch& exact, const trace::RayBatch& other, bool each_its_own) {
   const int image = eye.scene.surface_count();
-  const auto Q = numerics::vec3_cast<Long>(global_position(eye.scene, image, exact, 0));
-  const auto along = numerics::vec3_cast<Long>(global_direction(eye.scene, image, exact, 0));
-  const Long R = (static_cast<Long>(eye.first_order.exit_pupil.z) - Q.z) / along.z, index = eye.scene.primary.index[eye.scene.surfaces.size() - 1];
   const auto path = [&](const trace::RayBatch& rays, std::size_t i) {
+    const trace::RayBatch& chief = each_its_own ? rays : exact;
+    const auto Q = numerics::vec3_cast<Long>(global_position(eye.scene, image, chief, 0));
+    const auto along = numerics::vec3_cast<Long>(global_direction(eye.scene, image, chief, 0));
+    const Long R = (static_cast<Long>(eye.first_order.exit_pupil.z) - Q.z) / along.z, index = eye.scene.primary.index[eye.scene.surfaces.size() - 1];
     const auto p = numerics::vec3_cast<Long>(global_position(eye.scene, image, rays, i)), d = numerics::vec3_cast<Long>(global_direction(eye.scene, image, rays, i));
     const Long b = dot(p - Q, d), root = std::sqrt(b * b - dot(p - Q, p - Q) + R * R);
     return rays.opl[i] + index * (R > 0 ? -b + root : -b - root);
@@ -284,7 +286,7 @@ Difference difference(const CompiledScene& eye, const trace::RayBatch& exact, co
 
 struct Errors {
   double sag_rms_um = 0, sag_worst_um = 0;
-  Difference wavefront;
+  Difference wavefront, own_wavefront;
 };
 Errors errors_of(const PointCloud& cloud, const SyntheticCornea& cornea, const std::string& interpolation) {
   prescription::Model model = with_points(zernike_eye_on_the_axis(), cloud, {interpolation});
@@ -302,20 +304,25 @@ Errors errors_of(const PointCloud& cloud, const SyntheticCornea& cornea, const s
     errors.sag_worst_um = std::max(errors.sag_worst_um, std::abs(error));
   }
   errors.sag_rms_um = std::sqrt(errors.sag_rms_um);
-  errors.wavefront = difference(eye, exact_rays(eye.scene, cornea), traced(eye.scene));
+  const trace::RayBatch exact = exact_rays(eye.scene, cornea), other = traced(eye.scene);
+  errors.wavefront = difference(eye, exact, other, false);
+  errors.own_wavefront = difference(eye, exact, other, true);
   return errors;
 }
 
-void expect_c1_to_be_exact_enough(const PointCloud& cloud, const Kind& kind, const std::string& source) {
+// The slope under the chief ray, at the apex of rings without a point there, is extrapolated from the innermost ring: 0.03 waves
+// of tilt for the keratoconus on exact circles.
+void expect_c1_to_be_exact_enough(const PointCloud& cloud, const Kind& kind, const std::string& source, double own_tolerance) {
   const SyntheticCornea cornea(kind.kind);
   for (const std::string interpolation : {"c1", "linear"}) {
     const Errors errors = errors_of(cloud, cornea, interpolation);
-    fmt::print("[ report   ] {}, {}, {}: sag {:.5f} um rms, {:.4f} at worst; wavefront {:.5f} waves rms, {:.4f} at worst\n", kind.name, source, interpolation,
-               errors.sag_rms_um, errors.sag_worst_um, errors.wavefront.rms_waves, errors.wavefront.worst_waves);
+    fmt::print("[ report   ] {}, {}, {}: sag {:.5f} um rms, {:.4f} at worst; wavefront {:.5f} waves rms, {:.4f} at worst; to its own sphere {:.5f}\n", kind.name, source, interpolation,
+               errors.sag_rms_um, errors.sag_worst_um, errors.wavefront.rms_waves, errors.wavefront.worst_waves, errors.own_wavefront.rms_waves);
     EXPECT_TRUE(std::isfinite(errors.sag_rms_um) && std::isfinite(errors.wavefront.rms_waves));
     if (interpolation == "c1") {
       EXPECT_LE(errors.sag_rms_um, .02);
       EXPECT_LE(errors.wavefront.rms_waves, .02);
+      EXPECT_LE(errors.own_wavefront.rms_waves, own_tolerance);
     } else {
       // Unusable for wavefronts: rings .2174 mm apart on a curvature of .13/mm leave .13 x .2174^2/8 = .77 um of sag between
       // them, .52 waves; about a wave from place to place.
@@ -329,7 +336,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, SyntheticCorneas, testing::Range<std::size_t>(0,
 
 TEST_P(SyntheticCorneas, c1_through_samples_of_the_formula_is_the_cornea) {
   const Kind& kind = kinds[GetParam()];
-  expect_c1_to_be_exact_enough(samples_of(SyntheticCornea(kind.kind)), kind, "24 x 180 samples");
+  expect_c1_to_be_exact_enough(samples_of(SyntheticCornea(kind.kind)), kind, "24 x 180 samples", .04);
 }
 
 TEST_P(SyntheticCorneas, c1_through_the_shared_points_is_the_cornea) {
@@ -345,7 +352,7 @@ TEST_P(SyntheticCorneas, c1_through_the_shared_points_is_the_cornea) {
     ++compared;
   }
   EXPECT_GT(compared, 2300);
-  expect_c1_to_be_exact_enough(*cloud, kind, kind.file);
+  expect_c1_to_be_exact_enough(*cloud, kind, kind.file, .02);
 }
 
 }  // namespace

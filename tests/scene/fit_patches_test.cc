@@ -89,7 +89,7 @@ TEST(FitPatches, are_exact_for_cubics_on_every_layout) {
         ASSERT_NEAR(sheet.dz_dy, -0.2 + 0.01 * p.x + 0.14 * p.y - 0.002 * p.x * p.x + 0.008 * p.x * p.y - 0.003 * p.y * p.y, 1e-10)
             << layout.name << ' ' << turn;
       }
-      EXPECT_GT(compared, 4000) << layout.name;
+      EXPECT_GT(compared, 800) << layout.name;  // stretched 30 times, neighbourhoods are wide and reach the rim
     }
   }
 }
