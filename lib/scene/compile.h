@@ -15,12 +15,6 @@
 
 namespace sagitta::scene {
 
-// A surface of whose points a part was triangulated.
-struct CloudPart {
-  int surface = 0;                   // its number
-  std::size_t points = 0, used = 0;  // of the cloud; triangulated
-};
-
 struct CompileResult {
   std::optional<Scene> scene;     // present exactly when there is no error among the findings
   FirstOrder first_order{};       // at the primary wavelength

@@ -24,6 +24,12 @@ struct Line {
 // lines than there will be rays do no harm; of many rays a sample serves that bounds them to within the margin.
 using Beam = std::function<std::vector<Line>(const Scene& so_far, int number)>;
 
+// A surface of whose points a part was triangulated.
+struct CloudPart {
+  int surface = 0;                   // its number
+  std::size_t points = 0, used = 0;  // of the cloud; triangulated
+};
+
 struct Footprint {
   Rectangle places;
   Rectangle tangents;  // of the lines: dx/dz, dy/dz
