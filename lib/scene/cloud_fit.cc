@@ -90,7 +90,7 @@ double vertex_curvature(const prescription::PointCloud& cloud, double beam_radiu
   };
   constexpr double all = std::numeric_limits<double>::infinity();
   constexpr std::size_t least = 100;
-  double reach = beam_radius / 2;
+  double reach = beam_radius >= 0 ? beam_radius / 2 : 0;
   gather(reach);
   std::size_t count = static_cast<std::size_t>(std::count_if(near.begin(), near.end(), [&](std::uint32_t i) { return distance(i) <= beam_radius / 2; }));
   for (count = std::max(count, least);; count *= 2) {

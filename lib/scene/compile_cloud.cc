@@ -20,7 +20,7 @@ using prescription::PointCloud;
 using Storage = std::shared_ptr<const MeshStorage>;
 
 // The places between the facets over a footprint and the cut around the part: at first this many, then twice as many, and so on.
-constexpr double least_layers = 10, most_layers = 80;
+constexpr double least_layers = 14, most_layers = 112;
 
 // Facets whose interpolant could be another one in the whole cloud are left out of a part.
 template <class Patch>

@@ -43,13 +43,19 @@ std::optional<Footprint> footprint_of(const std::vector<Line>& lines, double low
 
 bool settles(const surface::Mesh& mesh, const Footprint& footprint) {
   if (mesh.facet_count == 0) return false;
-  const auto& [places, tangents] = footprint;
+  const auto& [inner, tangents] = footprint;
+  const auto around = [&](std::uint32_t f) {
+    Rectangle box;
+    for (const std::uint32_t v : mesh.corners[f]) box.include(mesh.vertices[v].x, mesh.vertices[v].y);
+    return box;
+  };
+  Rectangle places = inner;
+  for (std::uint32_t f = 0; f < mesh.facet_count; ++f)
+    if (const Rectangle box = around(f); box.meets(inner)) places.include(box.low_x, box.low_y), places.include(box.high_x, box.high_y);
   for (std::uint32_t f = 0; f < mesh.facet_count; ++f) {
+    if (!around(f).meets(places)) continue;
     const surface::Facet& facet = mesh.facets[f];
     const auto corner = [&](std::size_t i) -> const Vec3<double>& { return mesh.vertices[mesh.corners[f][i % 3]]; };
-    Rectangle around;
-    for (std::size_t i = 0; i < 3; ++i) around.include(corner(i).x, corner(i).y);
-    if (!around.meets(places)) continue;
     // along = d_z (1 - slope . tangent); from zero by more than what counts as grazing (surface/facet_location.h)
     const double most = std::max(facet.slope_x * tangents.low_x, facet.slope_x * tangents.high_x) +
                         std::max(facet.slope_y * tangents.low_y, facet.slope_y * tangents.high_y);

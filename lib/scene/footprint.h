@@ -39,8 +39,9 @@ struct Footprint {
 inline constexpr double footprint_margin = 1.0 / 32;
 std::optional<Footprint> footprint_of(const std::vector<Line>& lines, double low_z, double high_z);
 
-// True if the facets cover the whole footprint and all of its lines cross every facet there in the sense of its forward side:
-// then each line meets these facets once, by whatever way they are searched, and no other facet of the cloud.
+// True if the facets cover the whole footprint, and a facet's width around it for smooth patches that are met beside their
+// flat facet, and if all lines of the footprint cross every facet there in the sense of its forward side: then each line meets
+// these facets once, by whatever way they are searched, and no other facet of the cloud.
 bool settles(const surface::Mesh& mesh, const Footprint& footprint);
 
 }  // namespace sagitta::scene

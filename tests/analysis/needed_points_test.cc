@@ -130,6 +130,16 @@ TEST(NeededPoints, ResultsHaveTheSameBitsForTiltsFieldsWavelengthsAndCloudsInARo
   EXPECT_GE(parts, 20);  // of 24
 }
 
+TEST(NeededPoints, ATiltedBeamIsFollowedThroughTheDepthOfTheData) {
+  // It comes to the surface 0.9 mm beside where it passes the height of the lowest point: farther than a part reaches beyond its
+  // footprint.
+  Model model = model_of(shape_of(cloud_of(uniform_random(150000, 8, 12), sphere(12)), "linear"), 0.4);
+  model.surfaces[0].thickness_mm = 0;
+  model.surfaces[1].decenter_mm = {5, 0, 0};
+  model.fields.points = {{50, 0}};
+  EXPECT_EQ(compare(model, "deep").size(), 1u);
+}
+
 TEST(NeededPoints, AHoleInTheBeamOrABeamOverTheEdgeWantsAllPoints) {
   for (const std::string interpolation : {"c1", "linear"}) {
     PointCloud holed = cloud_of(uniform_random(10000, 5, 4), bumpy);
