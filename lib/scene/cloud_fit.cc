@@ -37,6 +37,7 @@ std::optional<double> second_derivative(const std::vector<Vec3<double>>& points,
 // sample does not tell, or tells no more than `reach`.
 double wider(const std::vector<Vec3<double>>& points, double reach, std::size_t count) {
   const std::vector<Vec3<double>> some = sample_of(points);
+  if (some.empty()) return std::numeric_limits<double>::infinity();
   const std::size_t wanted = 16 + 2 * count * some.size() / points.size();
   if (wanted >= some.size()) return std::numeric_limits<double>::infinity();
   std::vector<double> distances(some.size());
