@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "lib/analysis/job.h"
 #include "lib/prescription/keys.h"
 #include "lib/prescription/shape_reader.h"
 #include "lib/scene/fit_zernike.h"
@@ -60,18 +61,24 @@ ParsedVariant parse_variant(const std::string& text) {
 }
 
 std::optional<double> footprint_radius(const prescription::Model& model, int number) {
-  const auto compiled = load_scene(model);
-  if (!compiled) return std::nullopt;
-  const scene::Scene& scene = *compiled->scene;
   const auto pupil = trace::pupil_points({trace::PatternKind::hexapolar}, 2000);
   std::optional<double> radius;
-  for (const scene::Field& field : scene.fields)
-    for (const scene::Wavelength& wavelength : scene.wavelengths) {
-      trace::RayBatch rays = launch(scene, field, wavelength.index.front(), pupil);
-      for (int surface = 1; surface <= number; ++surface) trace_surface(scene, wavelength, surface, rays);
-      for (std::size_t i = 0; i < rays.size(); ++i)
-        if (rays.ended[i] == 0) radius = std::max(radius.value_or(0), std::hypot(rays.x[i], rays.y[i]));
-    }
+  for (const scene::Beam& beam : {analysis::beam_of_job(), scene::Beam{}}) {
+    const auto compiled = load_scene(model, beam);
+    if (!compiled) return std::nullopt;
+    const scene::Scene& scene = *compiled->scene;
+    radius.reset();
+    bool leaves = false;
+    for (const scene::Field& field : scene.fields)
+      for (const scene::Wavelength& wavelength : scene.wavelengths) {
+        trace::RayBatch rays = launch(scene, field, wavelength.index.front(), pupil);
+        for (int surface = 1; surface <= number; ++surface) trace_surface(scene, wavelength, surface, rays);
+        leaves = leaves || leaves_a_part(compiled->parts, count_statuses(rays));
+        for (std::size_t i = 0; i < rays.size(); ++i)
+          if (rays.ended[i] == 0) radius = std::max(radius.value_or(0), std::hypot(rays.x[i], rays.y[i]));
+      }
+    if (!leaves) break;
+  }
   return radius;
 }
 

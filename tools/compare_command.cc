@@ -77,12 +77,15 @@ struct CompiledSystems {
   std::vector<scene::Scene> scenes;  // as many, or fewer where one could not be compiled
 };
 
-CompiledSystems compile_all(std::vector<ComparedModel>& models) {
+// With what the rays need of point clouds, or with all of them.
+CompiledSystems compile_all(std::vector<ComparedModel>& models, bool whole) {
   CompiledSystems result;
   for (ComparedModel& one : models) {
     const bool is_first = &one == &models.front();
     if (!is_first && !take_rays_of(models.front().model, result.scenes.front().pupil, one.model)) continue;
-    auto compiled = load_scene(one.model);
+    std::optional<scene::LaunchPupil> pupil;
+    if (!is_first) pupil = result.scenes.front().pupil;
+    auto compiled = load_scene(one.model, whole ? scene::Beam{} : analysis::beam_of_job(pupil));
     if (!compiled && is_first) break;
     if (!compiled) continue;
     result.reports.push_back(make_report(one.model, *compiled));
@@ -93,14 +96,14 @@ CompiledSystems compile_all(std::vector<ComparedModel>& models) {
   return result;
 }
 
-output::Comparison compare(const std::vector<ComparedModel>& models, CompiledSystems compiled, const analysis::JobRequest& request) {
+output::Comparison compare(const std::vector<ComparedModel>& models, CompiledSystems compiled) {
   output::Comparison comparison;
-  auto& [reports, scenes] = compiled;
-  const auto results = run_with_progress(scenes, request);
+  std::vector<output::Report>& reports = compiled.reports;
   const std::vector<std::string> slugs = unique_slugs(models);
   for (std::size_t i = 0; i < models.size(); ++i) {
-    reports[i].results = results[i];
-    comparison.systems.push_back({std::move(reports[i]), slugs[i], models[i].fit, analysis::differences(results[i], results.front())});
+    const output::Report& reference = i == 0 ? reports[i] : comparison.systems.front().report;
+    std::vector<analysis::Difference> differences = analysis::differences(reports[i].results, reference.results);
+    comparison.systems.push_back({std::move(reports[i]), slugs[i], models[i].fit, std::move(differences)});
   }
   const Model& first = models.front().model;
   const auto primary = std::find(first.wavelengths_nm.begin(), first.wavelengths_nm.end(), first.primary_wavelength_nm());
@@ -157,11 +160,17 @@ int compare_command(const CompareOptions& options) {
   if (title.empty()) title = fmt::format("{} systems by the rays of {}", models.size(), models.front().name);
 
   request->spot_image_size = 512;  // sheets show the middle of it
-  CompiledSystems compiled = compile_all(models);
-  if (compiled.scenes.size() < models.size()) return 1;
   const fs::path folder(options.folder);
-  if (!make_folder("compare", folder)) return 1;
-  output::Comparison comparison = compare(models, std::move(compiled), *request);
+  CompiledSystems compiled;
+  for (const bool whole : {false, true}) {
+    compiled = compile_all(models, whole);
+    if (compiled.scenes.size() < models.size()) return 1;
+    if (!make_folder("compare", folder)) return 1;
+    auto results = run_with_progress(compiled.scenes, *request);
+    for (std::size_t i = 0; i < models.size(); ++i) compiled.reports[i].results = std::move(results[i]);
+    if (std::none_of(compiled.reports.begin(), compiled.reports.end(), [](const output::Report& one) { return leaves_a_part(one); })) break;
+  }
+  output::Comparison comparison = compare(models, std::move(compiled));
   comparison.title = title;
 
   const std::string summary = summary_json(comparison);

@@ -3,9 +3,11 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "lib/output/progress.h"
+#include "tools/load.h"
 
 namespace sagitta::tools {
 
@@ -38,7 +40,14 @@ output::Report make_report(const prescription::Model& model, const scene::Compil
   }
   report.first_order = compiled.first_order;
   report.smoothing = compiled.smoothing;
+  report.parts = compiled.parts;
   return report;
+}
+
+bool leaves_a_part(const output::Report& report) {
+  return std::any_of(report.results.begin(), report.results.end(), [&](const analysis::JobResult& result) {
+    return leaves_a_part(report.parts, result.rays) || (result.wavefront && leaves_a_part(report.parts, result.wavefront->rays));
+  });
 }
 
 std::vector<std::vector<analysis::JobResult>> run_with_progress(std::span<const scene::Scene> scenes, const analysis::JobRequest& request) {

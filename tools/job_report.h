@@ -20,6 +20,9 @@ std::optional<analysis::JobRequest> make_request(const char* command, const JobO
 // A report without results.
 output::Report make_report(const prescription::Model& model, const scene::CompileResult& compiled);
 
+// Whether a ray left what was triangulated (tools/load.h).
+bool leaves_a_part(const output::Report& report);
+
 // The job, with a line of progress on a terminal.
 std::vector<std::vector<analysis::JobResult>> run_with_progress(std::span<const scene::Scene> scenes, const analysis::JobRequest& request);
 

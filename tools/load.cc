@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <set>
 #include <utility>
 
@@ -11,7 +12,9 @@
 namespace sagitta::tools {
 
 bool report(const prescription::Findings& findings) {
-  for (const auto& finding : findings.all()) fmt::print(stderr, "{}\n", prescription::format(finding));
+  static std::set<std::string> told;
+  for (const auto& finding : findings.all())
+    if (const std::string text = prescription::format(finding); told.insert(text).second) fmt::print(stderr, "{}\n", text);
   return !findings.has_errors();
 }
 
@@ -21,10 +24,16 @@ std::optional<prescription::Model> load_model(const std::string& file) {
   return std::move(read.model);
 }
 
-std::optional<scene::CompileResult> load_scene(const prescription::Model& model) {
-  scene::CompileResult compiled = scene::compile(model);
+std::optional<scene::CompileResult> load_scene(const prescription::Model& model, const scene::Beam& beam) {
+  scene::CompileResult compiled = scene::compile(model, beam);
   if (!report(prescription::in_order(compiled.findings, model.documents))) return std::nullopt;
   return compiled;
+}
+
+bool leaves_a_part(const std::vector<scene::CloudPart>& parts, const trace::StatusCounts& rays) {
+  return std::any_of(parts.begin(), parts.end(), [&](const scene::CloudPart& part) {
+    return rays.endings.contains(trace::ending(part.surface, surface::Status::outside_data));
+  });
 }
 
 bool set_wavelengths(prescription::Model& model, const std::vector<double>& wavelengths_nm, const std::string& who) {

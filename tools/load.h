@@ -8,18 +8,23 @@
 
 #include "lib/prescription/model.h"
 #include "lib/scene/compile.h"
+#include "lib/trace/ray_batch.h"
 
 namespace sagitta::tools {
 
 // None, after printing every finding to standard error, where there is an error.
 std::optional<prescription::Model> load_model(const std::string& file);
-std::optional<scene::CompileResult> load_scene(const prescription::Model& model);
+std::optional<scene::CompileResult> load_scene(const prescription::Model& model, const scene::Beam& beam = {});
+
+// Whether a ray ended as outside_data on a cloud of which a part was triangulated: then the scene is to be loaded and traced
+// again, without a beam.
+bool leaves_a_part(const std::vector<scene::CloudPart>& parts, const trace::StatusCounts& rays);
 
 // Replaces the wavelengths of a model (its primary one stays); false, with a message that begins with "sagitta `who`: ",
 // where a medium does not reach one of them.
 bool set_wavelengths(prescription::Model& model, const std::vector<double>& wavelengths_nm, const std::string& who);
 
-// Prints the findings to standard error; false where there is an error among them.
+// Prints the findings to standard error, each once however often the program comes upon it; false where there is an error among them.
 bool report(const prescription::Findings& findings);
 
 }  // namespace sagitta::tools

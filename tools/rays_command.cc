@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
-#include <map>
 #include <optional>
 #include <span>
 #include <system_error>
 
+#include "lib/trace/beam.h"
 #include "lib/trace/pattern.h"
 #include "lib/trace/trace.h"
 #include "tools/commands.h"
@@ -21,6 +21,7 @@ namespace sagitta::tools {
 namespace {
 
 using numerics::Vec3;
+using trace::LaunchedRays;
 using trace::PupilPoint;
 using trace::RayBatch;
 
@@ -78,25 +79,25 @@ constexpr std::size_t most_at_once = 1024;
 
 class Listing {
  public:
-  Listing(const prescription::Model& model, const scene::Scene& scene) : scene_(scene) {
+  Listing(const prescription::Model& model, const scene::Scene& scene) : scene_(scene), wavelengths_nm_(model.wavelengths_nm) {
     for (const auto& surface : model.surfaces) names_.push_back(quoted(surface.name));
     fmt::print("ray,field,wavelength_nm,surface,name,x_mm,y_mm,z_mm,l,m,n,opl_mm,status\n");
   }
 
-  // Traces the rays and prints a row for each ray and surface. numbers[i] is the number of ray i.
-  void print(RayBatch rays, std::size_t field, double wavelength_nm, const scene::Wavelength& wavelength,
-             std::span<const std::size_t> numbers) {
+  // Traces the rays and prints a row for each ray and surface.
+  void print(const LaunchedRays& launched) {
+    RayBatch rays = launched.rays;
     std::vector<std::string> rows(rays.size());
     for (int surface = 1; surface <= scene_.surface_count(); ++surface) {
       std::vector<bool> travelled(rays.size());
       for (std::size_t i = 0; i < rays.size(); ++i) travelled[i] = rays.ended[i] == 0;
-      trace_surface(scene_, wavelength, surface, rays);
+      trace_surface(scene_, scene_.wavelengths[launched.wavelength], surface, rays);
       for (std::size_t i = 0; i < rays.size(); ++i) {
         if (!travelled[i]) continue;
         const Vec3<double> p = global_position(scene_, surface, rays, i), d = global_direction(scene_, surface, rays, i);
         fmt::format_to(std::back_inserter(rows[i]),
-                       "{},{},{:.17g},{},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{}\n", numbers[i], field,
-                       wavelength_nm, surface, names_[static_cast<std::size_t>(surface - 1)], p.x, p.y, p.z, d.x, d.y, d.z,
+                       "{},{},{:.17g},{},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{}\n", printed_ + i + 1, launched.field,
+                       wavelengths_nm_[launched.wavelength], surface, names_[static_cast<std::size_t>(surface - 1)], p.x, p.y, p.z, d.x, d.y, d.z,
                        rays.optical_path_length(i), surface::status_names[static_cast<std::size_t>(rays.status(i))]);
       }
     }
@@ -104,38 +105,56 @@ class Listing {
       if (std::fputs(rows[i].c_str(), stdout) < 0) throw std::system_error(errno, std::generic_category());
       any_arrived_ = any_arrived_ || rays.ended[i] == 0;
     }
+    printed_ += rays.size();
   }
   bool any_arrived() const { return any_arrived_; }
 
  private:
   const scene::Scene& scene_;
+  const std::vector<double>& wavelengths_nm_;
   std::vector<std::string> names_;
+  std::size_t printed_ = 0;
   bool any_arrived_ = false;
 };
 
+trace::StatusCounts endings_of(const trace::RaySource& source, const scene::Scene& scene) {
+  trace::StatusCounts counts;
+  source(scene, [&](const LaunchedRays& launched) {
+    RayBatch rays = launched.rays;
+    trace::trace(scene, scene.wavelengths[launched.wavelength], rays);
+    for (const std::int32_t ended : rays.ended) counts.add(ended);
+  });
+  return counts;
+}
+
+int print_rays(const prescription::Model& model, const trace::RaySource& source) {
+  std::optional<scene::CompileResult> compiled;
+  for (const scene::Beam& beam : {trace::beam_of(source), scene::Beam{}}) {
+    compiled = load_scene(model, beam);
+    if (!compiled) return 1;
+    if (compiled->parts.empty() || !leaves_a_part(compiled->parts, endings_of(source, *compiled->scene))) break;
+  }
+  Listing listing(model, *compiled->scene);
+  source(*compiled->scene, [&](const LaunchedRays& launched) { listing.print(launched); });
+  return listing.any_arrived() ? 0 : 1;
+}
+
 int print_launched(const RaysOptions& options, prescription::Model model, std::span<const PupilPoint> pupil) {
   if (options.wavelength_nm && !set_wavelengths(model, {*options.wavelength_nm}, "rays: --wavelength")) return 1;
-  const auto compiled = load_scene(model);
-  if (!compiled) return 1;
-  const scene::Scene& scene = *compiled->scene;
-  if (options.field && !(*options.field >= 0 && static_cast<std::size_t>(*options.field) < scene.fields.size())) {
-    fmt::print(stderr, "sagitta rays: --field {}: the system has the fields 0 to {}\n", *options.field, scene.fields.size() - 1);
+  if (const std::size_t count = model.fields.points.size(); options.field && !(*options.field >= 0 && static_cast<std::size_t>(*options.field) < count)) {
+    fmt::print(stderr, "sagitta rays: --field {}: the system has the fields 0 to {}\n", *options.field, count - 1);
     return 2;
   }
-  Listing listing(model, scene);
-  std::size_t number = 0;
-  for (std::size_t field = 0; field < scene.fields.size(); ++field) {
-    if (options.field && field != static_cast<std::size_t>(*options.field)) continue;
-    for (std::size_t w = 0; w < scene.wavelengths.size(); ++w)
-      for (std::size_t from = 0; from < pupil.size(); from += most_at_once) {
-        const auto part = pupil.subspan(from, std::min(most_at_once, pupil.size() - from));
-        std::vector<std::size_t> numbers(part.size());
-        for (std::size_t& one : numbers) one = ++number;
-        listing.print(launch(scene, scene.fields[field], scene.wavelengths[w].index.front(), part), field,
-                      model.wavelengths_nm[w], scene.wavelengths[w], numbers);
-      }
-  }
-  return listing.any_arrived() ? 0 : 1;
+  return print_rays(model, [&](const scene::Scene& scene, const auto& take) {
+    for (std::size_t field = 0; field < scene.fields.size(); ++field) {
+      if (options.field && field != static_cast<std::size_t>(*options.field)) continue;
+      for (std::size_t w = 0; w < scene.wavelengths.size(); ++w)
+        for (std::size_t from = 0; from < pupil.size(); from += most_at_once) {
+          const auto part = pupil.subspan(from, std::min(most_at_once, pupil.size() - from));
+          take({launch(scene, scene.fields[field], scene.wavelengths[w].index.front(), part), field, w});
+        }
+    }
+  });
 }
 
 // Runs of rays of one wavelength go together, so the listing keeps the order of the file.
@@ -149,23 +168,16 @@ int print_given(const RaysOptions& options, prescription::Model model) {
     if (std::find(wavelengths.begin(), wavelengths.end(), ray.wavelength_nm) == wavelengths.end())
       wavelengths.push_back(ray.wavelength_nm);
   if (!set_wavelengths(model, wavelengths, "rays: " + options.from)) return 1;
-  const auto compiled = load_scene(model);
-  if (!compiled) return 1;
-
-  Listing listing(model, *compiled->scene);
-  for (std::size_t from = 0, to = 0; from < given.size(); from = to) {
-    const double nm = given[from].wavelength_nm;
-    while (to < given.size() && to - from < most_at_once && given[to].wavelength_nm == nm) ++to;
-    RayBatch rays(to - from);
-    std::vector<std::size_t> numbers;
-    for (std::size_t i = from; i < to; ++i) {
-      rays.set(i - from, given[i].position, given[i].direction, 0);
-      numbers.push_back(i + 1);
+  return print_rays(model, [&](const scene::Scene&, const auto& take) {
+    for (std::size_t from = 0, to = 0; from < given.size(); from = to) {
+      const double nm = given[from].wavelength_nm;
+      while (to < given.size() && to - from < most_at_once && given[to].wavelength_nm == nm) ++to;
+      LaunchedRays launched{RayBatch(to - from)};
+      launched.wavelength = static_cast<std::size_t>(std::find(wavelengths.begin(), wavelengths.end(), nm) - wavelengths.begin());
+      for (std::size_t i = from; i < to; ++i) launched.rays.set(i - from, given[i].position, given[i].direction, 0);
+      take(launched);
     }
-    const auto w = static_cast<std::size_t>(std::find(wavelengths.begin(), wavelengths.end(), nm) - wavelengths.begin());
-    listing.print(std::move(rays), 0, nm, compiled->scene->wavelengths[w], numbers);
-  }
-  return listing.any_arrived() ? 0 : 1;
+  });
 }
 
 }  // namespace

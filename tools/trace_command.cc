@@ -27,16 +27,18 @@ int trace_command(const TraceOptions& options) {
   if (!request) return 2;
   const auto model = load_model(options.system);
   if (!model) return 1;
-  const auto compiled = load_scene(*model);
-  if (!compiled) return 1;
-
   const std::filesystem::path folder(options.folder);
-  if (!make_folder("trace", folder)) return 1;
-
   request->want_spot = wants(options, "spot");
   request->want_wavefront = wants(options, "wavefront");
-  output::Report report = make_report(*model, *compiled);
-  report.results = std::move(run_with_progress({&*compiled->scene, 1}, *request).front());
+  output::Report report;
+  for (const scene::Beam& beam : {analysis::beam_of_job(), scene::Beam{}}) {
+    const auto compiled = load_scene(*model, beam);
+    if (!compiled) return 1;
+    if (!make_folder("trace", folder)) return 1;
+    report = make_report(*model, *compiled);
+    report.results = std::move(run_with_progress({&*compiled->scene, 1}, *request).front());
+    if (!leaves_a_part(report)) break;
+  }
 
   bool all_written = true;
   if (request->want_spot) all_written &= write_image("trace", folder / "spot", spot_parts(report), spot_figure(report));

@@ -17,7 +17,7 @@ using surface::Status;
 // Rays that travel together: few enough that a batch stays in the second-level cache, enough to occupy the threads.
 constexpr std::int64_t portion = 1 << 15;
 
-// Some rays over the pupil and many on its rim, to learn where the spot will be and how large.
+// Some rays over the pupil and many on its rim: a sample of those of any pattern.
 std::vector<trace::PupilPoint> pilot_points() {
   std::vector<trace::PupilPoint> points = trace::pupil_points({trace::PatternKind::hexapolar}, 600);
   for (int i = 0; i < 360; ++i)
@@ -93,6 +93,17 @@ std::vector<Coverage> coverage_of(const scene::Scene& scene, const trace::Status
 }
 
 }  // namespace
+
+scene::Beam beam_of_job(std::optional<scene::LaunchPupil> pupil) {
+  return trace::beam_of([pupil](const scene::Scene& scene, const std::function<void(const trace::LaunchedRays&)>& take) {
+    scene::Scene launching = scene;
+    if (pupil) launching.pupil = *pupil;
+    const std::vector<trace::PupilPoint> points = pilot_points();
+    for (std::size_t field = 0; field < scene.fields.size(); ++field)
+      for (std::size_t w = 0; w < scene.wavelengths.size(); ++w)
+        take({launch(launching, scene.fields[field], scene.wavelengths[w].index.front(), points), field, w});
+  });
+}
 
 std::vector<std::vector<JobResult>> run_jobs(std::span<const scene::Scene> scenes, const JobRequest& request, const Progress& progress) {
   struct Task {

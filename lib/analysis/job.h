@@ -11,6 +11,7 @@
 #include "lib/analysis/spot.h"
 #include "lib/analysis/wavefront.h"
 #include "lib/scene/scene.h"
+#include "lib/trace/beam.h"
 #include "lib/trace/pattern.h"
 
 namespace sagitta::analysis {
@@ -44,6 +45,10 @@ struct JobResult {
 
 // Called now and then with the share of the rays that are traced, in [0, 1].
 using Progress = std::function<void(double)>;
+
+// What the rays of a job need of surfaces made of points (scene/compile.h), whatever its pattern: some rays over the pupil and
+// many on its rim, of every field and wavelength. `pupil` takes the place of the scene's own.
+scene::Beam beam_of_job(std::optional<scene::LaunchPupil> pupil = {});
 
 // Results by field, then wavelength. Memory does not grow with the number of rays.
 std::vector<JobResult> run_job(const scene::Scene& scene, const JobRequest& request, const Progress& progress = {});

@@ -16,6 +16,7 @@
 #include "lib/output/figure.h"
 #include "lib/output/table.h"
 #include "lib/scene/first_order.h"
+#include "lib/scene/footprint.h"
 #include "lib/scene/smooth.h"
 
 namespace sagitta::output {
@@ -29,6 +30,7 @@ struct Report {
   std::vector<int> surfaces_of_flat_facets;   // their numbers: wavefronts behind one are of no use, which is said
   scene::FirstOrder first_order;              // at the primary wavelength
   std::map<int, scene::Smoothing> smoothing;  // by the number of the surface
+  std::vector<scene::CloudPart> parts;        // of clouds, that were enough for the rays
   std::vector<analysis::JobResult> results;
 };
 

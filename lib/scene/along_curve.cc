@@ -1,29 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <limits>
 
 #include "lib/scene/delaunay.h"
 
 namespace sagitta::scene {
 namespace {
 
-struct Box {
-  double low_x, low_y, high_x, high_y;
-};
-Box box_of(const std::vector<numerics::Vec3<double>>& points) {
-  constexpr double inf = std::numeric_limits<double>::infinity();
-  Box box{inf, inf, -inf, -inf};
-  for (const auto& p : points) {
-    box.low_x = std::min(box.low_x, p.x), box.high_x = std::max(box.high_x, p.x);
-    box.low_y = std::min(box.low_y, p.y), box.high_y = std::max(box.high_y, p.y);
-  }
+Rectangle box_of(const std::vector<numerics::Vec3<double>>& points) {
+  Rectangle box;
+  for (const auto& p : points) box.include(p.x, p.y);
   return box;
 }
 
 }  // namespace
 
 std::vector<std::uint32_t> along_curve(const std::vector<numerics::Vec3<double>>& points) {
-  const Box box = box_of(points);
+  const Rectangle box = box_of(points);
+  return along_curve(points, box, box);
+}
+
+std::vector<std::uint32_t> along_curve(const std::vector<numerics::Vec3<double>>& points, const Rectangle& box, const Rectangle& within) {
   const auto spread = [](std::uint64_t v) {
     v = (v | (v << 16)) & 0x0000FFFF0000FFFF;
     v = (v | (v << 8)) & 0x00FF00FF00FF00FF;
@@ -38,17 +34,20 @@ std::vector<std::uint32_t> along_curve(const std::vector<numerics::Vec3<double>>
     std::uint64_t place;
     std::uint32_t point;
   };
-  std::vector<Key> keys(points.size());
+  const auto is_within = [&](const numerics::Vec3<double>& p) { return within.contains(p.x, p.y); };
+  std::vector<Key> keys;
+  keys.reserve(static_cast<std::size_t>(std::count_if(points.begin(), points.end(), is_within)));
   for (std::uint32_t i = 0; i < points.size(); ++i) {
+    if (!is_within(points[i])) continue;
     const auto column = cell((points[i].x - box.low_x) * columns_per_mm), row = cell((points[i].y - box.low_y) * rows_per_mm);
-    keys[i] = {spread(column) | spread(row) << 1, i};
+    keys.push_back({spread(column) | spread(row) << 1, i});
   }
   std::sort(keys.begin(), keys.end(), [&](const Key& a, const Key& b) {
     if (a.place != b.place) return a.place < b.place;
     const auto &p = points[a.point], &q = points[b.point];
     return p.x != q.x ? p.x < q.x : p.y != q.y ? p.y < q.y : a.point < b.point;
   });
-  std::vector<std::uint32_t> order(points.size());
+  std::vector<std::uint32_t> order(keys.size());
   std::transform(keys.begin(), keys.end(), order.begin(), [](const Key& key) { return key.point; });
   return order;
 }

@@ -111,6 +111,16 @@ void refuse_cliffs(const PointCloud& cloud, const std::vector<RawFacet>& facets,
   }
 }
 
+void finish(MeshStorage& storage) {
+  Mesh& mesh = storage.mesh;
+  mesh.vertices = storage.vertices.data();
+  mesh.corners = storage.corners.data();
+  mesh.facets = storage.facets.data();
+  mesh.vertex_count = static_cast<std::uint32_t>(storage.vertices.size());
+  mesh.facet_count = static_cast<std::uint32_t>(storage.facets.size());
+  if (mesh.facet_count > 0) index_mesh(storage);
+}
+
 }  // namespace
 
 std::shared_ptr<const MeshStorage> build_mesh(const PointCloud& places, const CloudExtent& extent, std::vector<RawFacet> facets,
@@ -126,13 +136,27 @@ std::shared_ptr<const MeshStorage> build_mesh(const PointCloud& places, const Cl
   refuse_cliffs(places, facets, *storage, findings);
   if (findings.has_errors()) return nullptr;
   facets = {};
+  finish(*storage);
+  return storage;
+}
 
-  mesh.vertices = storage->vertices.data();
-  mesh.corners = storage->corners.data();
-  mesh.facets = storage->facets.data();
-  mesh.vertex_count = static_cast<std::uint32_t>(storage->vertices.size());
-  mesh.facet_count = static_cast<std::uint32_t>(storage->facets.size());
-  index_mesh(*storage);
+std::shared_ptr<const MeshStorage> without_facets(const MeshStorage& all, const std::vector<char>& is_dropped) {
+  auto storage = std::make_shared<MeshStorage>();
+  storage->mesh.centre = all.mesh.centre;
+  storage->mesh.extent = all.mesh.extent;
+  storage->mesh.base = all.mesh.base;
+  storage->vertices = all.vertices;
+  std::vector<std::uint32_t> new_index(all.facets.size(), no_facet);
+  std::uint32_t count = 0;
+  for (std::size_t f = 0; f < all.facets.size(); ++f)
+    if (!is_dropped[f]) new_index[f] = count++;
+  for (std::size_t f = 0; f < all.facets.size(); ++f) {
+    if (is_dropped[f]) continue;
+    storage->corners.push_back(all.corners[f]);
+    Facet& facet = storage->facets.emplace_back(all.facets[f]);
+    for (std::uint32_t& next : facet.neighbour) next = next == no_facet ? no_facet : new_index[next];
+  }
+  finish(*storage);
   return storage;
 }
 

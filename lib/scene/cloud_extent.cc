@@ -13,7 +13,9 @@ using numerics::Vec3;
 CloudExtent extent_of(const prescription::PointCloud& cloud) {
   constexpr double inf = std::numeric_limits<double>::infinity();
   Vec3<double> low{inf, inf, inf}, high{-inf, -inf, -inf};
+  Rectangle places;
   for (const Vec3<double>& p : cloud.points) {
+    places.include(p.x, p.y);
     if (std::isnan(p.z)) continue;
     low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
     high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
@@ -30,7 +32,7 @@ CloudExtent extent_of(const prescription::PointCloud& cloud) {
   const Vec3<double> centre{median([](const auto& p) { return p.x; }), median([](const auto& p) { return p.y; }),
                             median([](const auto& p) { return p.z; })};
   const Vec3<double> up = high - centre, down = centre - low;
-  return {low.x, low.y, high.x, high.y, centre, std::max({up.x, up.y, up.z, down.x, down.y, down.z}), fit_base_sphere(cloud.points, centre)};
+  return {places, low, high, centre, std::max({up.x, up.y, up.z, down.x, down.y, down.z}), fit_base_sphere(cloud.points, centre)};
 }
 
 }  // namespace sagitta::scene

@@ -33,6 +33,20 @@ std::optional<double> second_derivative(const std::vector<Vec3<double>>& points,
   return 2 * (*solution)(2) / scale / scale;  // terms run 1, y, y^2, ...
 }
 
+// A radius about the origin within which there are likely `count` points and more, by a sample of them; infinite where the
+// sample does not tell, or tells no more than `reach`.
+double wider(const std::vector<Vec3<double>>& points, double reach, std::size_t count) {
+  const std::vector<Vec3<double>> some = sample_of(points);
+  if (some.empty()) return std::numeric_limits<double>::infinity();
+  const std::size_t wanted = 16 + 2 * count * some.size() / points.size();
+  if (wanted >= some.size()) return std::numeric_limits<double>::infinity();
+  std::vector<double> distances(some.size());
+  std::transform(some.begin(), some.end(), distances.begin(), [](const auto& p) { return std::hypot(p.x, p.y); });
+  const auto at = distances.begin() + static_cast<std::ptrdiff_t>(wanted);
+  std::nth_element(distances.begin(), at, distances.end());
+  return *at > reach ? *at : std::numeric_limits<double>::infinity();
+}
+
 }  // namespace
 
 std::vector<Vec3<double>> sample_of(const std::vector<Vec3<double>>& points) {
@@ -65,26 +79,36 @@ surface::BaseSphere fit_base_sphere(const std::vector<Vec3<double>>& all_points,
 double vertex_curvature(const prescription::PointCloud& cloud, double beam_radius) {
   const auto& points = cloud.points;
   const auto distance = [&](std::uint32_t i) { return std::hypot(points[i].x, points[i].y); };
-  std::vector<std::uint32_t> nearest;
-  for (std::uint32_t i = 0; i < points.size(); ++i) {
-    if (!std::isnan(points[i].z)) nearest.push_back(i);
-  }
-  std::size_t count = static_cast<std::size_t>(
-      std::count_if(nearest.begin(), nearest.end(), [&](std::uint32_t i) { return distance(i) <= beam_radius / 2; }));
-  count = std::min(std::max<std::size_t>(count, 100), nearest.size());
-  for (;; count = std::min(2 * count, nearest.size())) {
-    const auto end = nearest.begin() + static_cast<std::ptrdiff_t>(count);
+  // Those within a radius, by passes that read on and do little: of a large cloud all but a few are far away.
+  std::vector<std::uint32_t> near;
+  const auto gather = [&](double radius) {
+    near.clear();
+    const double bound = radius * radius * (1 + 1e-12);
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+      const auto& p = points[i];
+      if (p.x * p.x + p.y * p.y <= bound && !std::isnan(p.z)) near.push_back(i);
+    }
+  };
+  constexpr double all = std::numeric_limits<double>::infinity();
+  constexpr std::size_t least = 100;
+  double reach = beam_radius >= 0 ? beam_radius / 2 : 0;
+  gather(reach);
+  std::size_t count = static_cast<std::size_t>(std::count_if(near.begin(), near.end(), [&](std::uint32_t i) { return distance(i) <= beam_radius / 2; }));
+  for (count = std::max(count, least);; count *= 2) {
+    while (near.size() < count && reach < all) gather(reach = wider(points, reach, count));
+    count = std::min(count, near.size());
+    const auto end = near.begin() + static_cast<std::ptrdiff_t>(count);
     const auto is_nearer = [&](std::uint32_t a, std::uint32_t b) {
       const double da = distance(a), db = distance(b);
       return da != db ? da < db : a < b;
     };
-    if (count < nearest.size()) std::nth_element(nearest.begin(), end, nearest.end(), is_nearer);
-    const std::vector<std::uint32_t> used(nearest.begin(), end);
+    if (count < near.size()) std::nth_element(near.begin(), end, near.end(), is_nearer);
+    const std::vector<std::uint32_t> used(near.begin(), end);
     double scale = 0;
     for (const std::uint32_t i : used) scale = std::max(scale, distance(i));
     if (!(scale > 0)) break;
     if (const auto found = second_derivative(points, used, scale, 4)) return *found;
-    if (count < nearest.size()) continue;
+    if (count < near.size() || reach < all) continue;
     if (const auto found = second_derivative(points, used, scale, 2)) return *found;
     break;
   }

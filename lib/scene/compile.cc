@@ -8,9 +8,7 @@
 #include <numbers>
 
 #include "lib/scene/cloud_fit.h"
-#include "lib/scene/fit_patches.h"
-#include "lib/scene/fit_radial.h"
-#include "lib/scene/triangulate_smoothed.h"
+#include "lib/scene/compile_cloud.h"
 
 namespace sagitta::scene {
 namespace {
@@ -32,53 +30,6 @@ Wavelength compile_wavelength(const Model& model, double wavelength_nm, Findings
     result.index.push_back(index);
   }
   return result;
-}
-
-template <surface::RadialFunction function>
-surface::Shape radial(const surface::Facets& facets, const prescription::Parameters& given, numerics::Arena& arena) {
-  auto fit = fit_radial<function>(*facets.mesh, {static_cast<int>(given.number("rings")), given.number("shape_mm")});
-  return surface::RadialPatches<function>{facets, arena.keep(std::move(fit.patches)), arena.keep(std::move(fit.nodes)),
-                                          arena.keep(std::move(fit.weights)), fit.shape_squared};
-}
-
-surface::Shape interpolate(const surface::Facets& facets, const prescription::Parameters& given, numerics::Arena& arena) {
-  using surface::RadialFunction;
-  const std::string& interpolation = given.text("interpolation");
-  if (interpolation == "linear") return facets;
-  if (interpolation == "cubic") return radial<RadialFunction::cubic>(facets, given, arena);
-  if (interpolation == "thin_plate") return radial<RadialFunction::thin_plate>(facets, given, arena);
-  if (interpolation == "multiquadric") return radial<RadialFunction::multiquadric>(facets, given, arena);
-  return surface::Patches{facets, arena.keep(fit_patches(*facets.mesh).patches)};
-}
-
-// The facets under a shape made of points; null for other shapes.
-surface::Facets* facets_of(surface::Shape& shape) {
-  return std::visit(
-      []<class S>(S& of) -> surface::Facets* {
-        if constexpr (std::is_same_v<S, surface::Facets>) return &of;
-        else if constexpr (requires { of.facets; }) return &of.facets;
-        else return nullptr;
-      },
-      shape);
-}
-
-// A shape made of points. Its vertex curvature follows when the beam is known (set_vertex_curvatures).
-struct CompiledCloud {
-  surface::Shape shape;
-  std::shared_ptr<const prescription::PointCloud> cloud;  // with the heights that are traced
-  std::optional<Smoothing> smoothing;
-};
-CompiledCloud compile_cloud(const prescription::Shape& given, numerics::Arena& arena, Findings& findings) {
-  const auto& parameters = given.parameters;
-  auto [made, cloud, smoothing] = triangulate_smoothed(given.cloud, parameters.number("max_edge_mm"), parameters.number("smoothing_um") / 1000);
-  for (const auto& finding : made.findings.all()) findings.add(finding);
-  if (!made.findings.all().empty()) findings.note(given.place, "named here");
-  if (!made.mesh) return {};
-  if (smoothing)
-    findings.note(given.place, fmt::format("smoothed: the heights leave the points by {:.4g} um rms, {:.4g} um at most{}", 1000 * smoothing->residual_rms,
-                                           1000 * smoothing->residual_max, std::isfinite(smoothing->lambda) ? "" : ": the best-fit sphere and plane, "
-                                           "as smooth as can be, for smoothing_um is more than they leave"));
-  return {interpolate(surface::Facets{&arena.keep_shared(made.mesh).mesh}, parameters, arena), std::move(cloud), smoothing};
 }
 
 // A shape from its checked parameters, by the closed list of kinds.
@@ -181,9 +132,24 @@ void set_vertex_curvatures(const Model& model, const Clouds& clouds, Scene& scen
   set([&](int number) { return marginal_height(before, before.primary, paraxial.entrance_pupil, number); });
 }
 
-}  // namespace
+// The surfaces whose points the beam may need in part only, made in the order of the light: each from the lines that come
+// to it through those before.
+void compile_what_is_needed(const Model& model, const Beam& beam, const std::vector<int>& numbers, CompileResult& result, Scene& scene) {
+  for (const int number : numbers) {
+    const prescription::Shape& given = model.surfaces[static_cast<std::size_t>(number - 1)].shape;
+    Surface& surface = scene.surfaces[static_cast<std::size_t>(number - 1)];
+    if (auto part = compile_part(given, beam(scene, number), scene.arena, result.findings)) {
+      surface.shape = part->shape;
+      result.parts.push_back({number, given.cloud->points.size(), part->used});
+    } else {
+      surface.shape = compile_cloud(given, scene.arena, result.findings).shape;
+    }
+    if (result.findings.has_errors()) return;
+    facets_of(surface.shape)->curvature = surface.vertex_curvature;
+  }
+}
 
-CompileResult compile(const Model& model) {
+CompileResult compile_for(const Model& model, const Beam& beam) {
   CompileResult result;
   Findings& findings = result.findings;
   Scene scene;
@@ -196,14 +162,20 @@ CompileResult compile(const Model& model) {
   scene.object.z = -model.object.distance_mm;
   scene.fields = compile_fields(model.fields);
   Clouds clouds(model.surfaces.size());
+  std::vector<int> waiting;  // for the beam
   for (std::size_t i = 0; i < model.surfaces.size(); ++i) {
     const prescription::Surface& given = model.surfaces[i];
+    const int number = static_cast<int>(i) + 1;
     Surface& surface = scene.surfaces[i];
-    if (given.shape.cloud) {
+    if (given.shape.cloud && beam && may_be_a_part(given.shape)) {
+      surface.shape = surface::Facets{};
+      clouds[i] = given.shape.cloud;
+      waiting.push_back(number);
+    } else if (given.shape.cloud) {
       CompiledCloud compiled = compile_cloud(given.shape, scene.arena, findings);
       surface.shape = compiled.shape;
       clouds[i] = compiled.cloud;
-      if (compiled.smoothing) result.smoothing[static_cast<int>(i) + 1] = *compiled.smoothing;
+      if (compiled.smoothing) result.smoothing[number] = *compiled.smoothing;
     } else {
       surface.shape = compile_shape(given.shape, scene.arena);
     }
@@ -211,7 +183,7 @@ CompileResult compile(const Model& model) {
     surface.image = i + 1 == model.surfaces.size();
     surface.semi_diameter = given.semi_diameter_mm;
     surface.inner_semi_diameter = given.inner_semi_diameter_mm;
-    if (given.stop) scene.stop = static_cast<int>(i) + 1;
+    if (given.stop) scene.stop = number;
   }
   if (findings.has_errors()) return result;
 
@@ -224,8 +196,17 @@ CompileResult compile(const Model& model) {
   scene.pupil = compile_pupil(model, scene, first_order(scene, scene.primary, 1), findings);
   result.first_order = first_order(scene, scene.primary,
                                    scene.pupil.telecentric ? std::numeric_limits<double>::quiet_NaN() : scene.pupil.semi_diameter);
+  if (!findings.has_errors()) compile_what_is_needed(model, beam, waiting, result, scene);
   if (!findings.has_errors()) result.scene = std::move(scene);
   return result;
+}
+
+}  // namespace
+
+CompileResult compile(const Model& model, const Beam& beam) {
+  CompileResult result = compile_for(model, beam);
+  // with all points, everything that is wrong with them is told, and nothing that follows from it
+  return result.scene || !beam ? std::move(result) : compile_for(model, {});
 }
 
 }  // namespace sagitta::scene

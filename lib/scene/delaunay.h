@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lib/numerics/vec3.h"
+#include "lib/scene/rectangle.h"
 
 namespace sagitta::scene {
 
@@ -22,6 +23,8 @@ struct RawFacet {
 // (x, y) is mostly near; within a cell by x, then y, then number. So points at one place follow each other. Coordinates
 // are finite.
 std::vector<std::uint32_t> along_curve(const std::vector<numerics::Vec3<double>>& points);
+// The same curve over `box`, and of the points those `within` a rectangle only: in the order that they have among all.
+std::vector<std::uint32_t> along_curve(const std::vector<numerics::Vec3<double>>& points, const Rectangle& box, const Rectangle& within);
 
 // The facets of points that are distinct in (x, y) and in the order of along_curve (in another it takes a time that grows
 // with their square). None if all lie on a straight line. The facets are a function of the set of points: of those on a

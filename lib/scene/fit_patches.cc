@@ -117,16 +117,6 @@ class VertexFits {
   std::vector<std::uint32_t> waiting_, unfinished_, sorted_;
 };
 
-std::vector<char> vertices_on_rim(const Mesh& mesh) {
-  std::vector<char> is_on_rim(mesh.vertex_count, false);
-  for (std::uint32_t f = 0; f < mesh.facet_count; ++f)
-    for (int i = 0; i < 3; ++i) {
-      if (mesh.facets[f].neighbour[i] == surface::no_facet)
-        is_on_rim[mesh.corners[f][(i + 1) % 3]] = is_on_rim[mesh.corners[f][(i + 2) % 3]] = true;
-    }
-  return is_on_rim;
-}
-
 CloughTocherPatch patch_of(const Mesh& mesh, const surface::Corners& corner, const std::vector<CubicFit>& fits) {
   CloughTocherPatch::Corner corners[3];
   CloughTocherPatch::Slope slopes[3];

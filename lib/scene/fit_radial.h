@@ -20,6 +20,9 @@ struct RadialFit {
   std::vector<std::uint32_t> nodes;
   std::vector<double> weights;
   double shape_squared = 0;
+  // Of each facet: a node lies on the rim or on a hole. Another facet's interpolant would have the same bits in a larger mesh
+  // that has the same facets there, for the same shape.
+  std::vector<char> reaches_rim;
 };
 
 // (1) and (2) of radial.h, solved by LU with full pivoting after scaling to the size of the neighbourhood. The system is

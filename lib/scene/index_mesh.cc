@@ -22,9 +22,6 @@ std::array<Vec3<double>, 3> triangle(const Mesh& mesh, std::uint32_t facet) {
   return {corner(0), corner(1), corner(2)};
 }
 
-struct Rectangle {
-  double low_x, low_y, high_x, high_y;
-};
 Rectangle rectangle_around(const std::array<Vec3<double>, 3>& corner) {
   const auto [low_x, high_x] = std::minmax({corner[0].x, corner[1].x, corner[2].x});
   const auto [low_y, high_y] = std::minmax({corner[0].y, corner[1].y, corner[2].y});
@@ -60,8 +57,7 @@ void for_each_row(const surface::Grid& grid, const std::array<Vec3<double>, 3>& 
 // are so long and thin that their rows would outnumber them by far.
 void lay_grid(MeshStorage& storage) {
   Mesh& mesh = storage.mesh;
-  constexpr double inf = std::numeric_limits<double>::infinity();
-  Rectangle all{inf, inf, -inf, -inf};
+  Rectangle all;
   double mean_x = 0, mean_y = 0;  // sizes of the facets' rectangles
   for (std::uint32_t f = 0; f < mesh.facet_count; ++f) {
     const Rectangle box = rectangle_around(triangle(mesh, f));

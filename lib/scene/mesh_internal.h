@@ -20,22 +20,17 @@ double edge_length(const prescription::PointCloud& cloud, const RawFacet& facet,
 // Turned so that corner[0] is opposite to the longest edge: cross products of the two edges from there lose least.
 RawFacet from_widest_corner(const prescription::PointCloud& cloud, const RawFacet& facet);
 
-// Leaves out what is no surface; the neighbours of those that stay are renumbered.
+// Leaves out what is no surface; the neighbours of those that stay are renumbered. Facets that are not known, where some
+// are not (known_facets), are left out from the outset and count as outside.
 struct Trimmed {
   std::vector<RawFacet> facets;
   std::size_t holes = 0, long_edges = 0, slivers = 0;  // how many went, and why
 };
-Trimmed trim(const prescription::PointCloud& cloud, std::vector<RawFacet> facets, double max_edge);
+Trimmed trim(const prescription::PointCloud& cloud, std::vector<RawFacet> facets, double max_edge, const std::vector<char>& is_known = {});
 
-// Where the whole cloud lies, holes not counted. All that steers a ray depends on it, and not on the facets at hand: part
-// of a cloud's facets give a ray the same bits as all of them.
-struct CloudExtent {
-  double low_x, low_y, high_x, high_y;
-  numerics::Vec3<double> centre;  // medians, which a stray point far away does not move
-  double reach;                   // the largest distance of a coordinate from the centre's
-  surface::BaseSphere base;
-};
-CloudExtent extent_of(const prescription::PointCloud& cloud);
+// Of the triangulation of a cloud's places within a window, which facets are known to be facets of the whole cloud's
+// triangulation, with all that share a corner with them (triangulate.h, "a part").
+std::vector<char> known_facets(const prescription::PointCloud& places, const std::vector<RawFacet>& facets, const Rectangle& window);
 
 // Vertices and facets in the order of the places, which run along a curve. Facets without a slope are errors.
 std::shared_ptr<const MeshStorage> build_mesh(const prescription::PointCloud& places, const CloudExtent& extent, std::vector<RawFacet> facets,

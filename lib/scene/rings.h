@@ -11,6 +11,17 @@
 
 namespace sagitta::scene {
 
+// Of each vertex: whether it lies on the rim or on a hole.
+inline std::vector<char> vertices_on_rim(const surface::Mesh& mesh) {
+  std::vector<char> is_on_rim(mesh.vertex_count, false);
+  for (std::uint32_t f = 0; f < mesh.facet_count; ++f)
+    for (int i = 0; i < 3; ++i) {
+      if (mesh.facets[f].neighbour[i] == surface::no_facet)
+        is_on_rim[mesh.corners[f][(i + 1) % 3]] = is_on_rim[mesh.corners[f][(i + 2) % 3]] = true;
+    }
+  return is_on_rim;
+}
+
 // The vertices that share an edge with each vertex, as lists end to end.
 class Neighbours {
  public:

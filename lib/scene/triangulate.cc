@@ -22,11 +22,15 @@ std::size_t number_of(const PointCloud& cloud, std::size_t point) {
   return point < cloud.lines.size() ? cloud.lines[point] : point + 1;
 }
 
-bool coordinates_are_legal(const PointCloud& cloud, Findings& findings) {
+bool is_legal(const numerics::Vec3<double>& p) {
   const auto legal = [](double v) { return std::abs(v) <= largest_coordinate; };  // false for NaN
+  return legal(p.x) && legal(p.y) && (legal(p.z) || std::isnan(p.z));
+}
+
+bool coordinates_are_legal(const PointCloud& cloud, Findings& findings) {
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     const auto& p = cloud.points[i];
-    if (legal(p.x) && legal(p.y) && (legal(p.z) || std::isnan(p.z))) continue;
+    if (is_legal(p)) continue;
     findings.error(place_of(cloud, i),
                    fmt::format("{}the point ({:.9g}, {:.9g}, {:.9g}) is beyond +-1e9 mm", before_what(cloud, i), p.x, p.y, p.z),
                    "coordinates are in mm");
@@ -35,10 +39,11 @@ bool coordinates_are_legal(const PointCloud& cloud, Findings& findings) {
   return !findings.has_errors();
 }
 
-// One point of every place, along the curve. Of points at one place the first with a height stays; another height is an error.
-PointCloud distinct_places(const PointCloud& cloud, Findings& findings) {
+// One point of every place in the window, along the curve. Of points at one place the first with a height stays; another
+// height is an error.
+PointCloud distinct_places(const PointCloud& cloud, const Rectangle& all, const Rectangle& window, Findings& findings) {
   const auto& points = cloud.points;
-  std::vector<std::uint32_t> order = along_curve(points);
+  std::vector<std::uint32_t> order = along_curve(points, all, window);
   std::size_t count = 0, repeated = 0;
   std::uint32_t first_repeated = 0;
   for (const std::uint32_t i : order) {
@@ -94,6 +99,29 @@ bool spread_is_legal(const PointCloud& places, Findings& findings) {
   return true;
 }
 
+// All of the cloud where there is no window.
+void triangulate_within(const Rectangle* window, const PointCloud& cloud, const CloudExtent& extent, double max_edge, Triangulation& result) {
+  Findings& findings = result.findings;
+  // From here on points go by their numbers along the curve: what is near on the surface is near in memory.
+  const PointCloud places = distinct_places(cloud, extent.places, window ? *window : extent.places, findings);
+  result.place_count = places.points.size();
+  if (findings.has_errors() || !spread_is_legal(places, findings)) return;
+  std::vector<RawFacet> facets = delaunay(places.points);
+  const prescription::Place file{cloud.file};
+  if (facets.empty()) return findings.error(file, "all points lie on one straight line in (x, y)", "a surface needs points on both sides of it");
+  std::vector<char> is_known;
+  if (window) is_known = known_facets(places, facets, *window);
+  Trimmed trimmed = trim(places, std::move(facets), max_edge, is_known);
+  if (trimmed.facets.empty()) {
+    return findings.error(file,
+                          fmt::format("no facet is left between the points: {} touch a hole, {} have an edge longer than max_edge_mm, "
+                                      "{} are slivers of the hull",
+                                      trimmed.holes, trimmed.long_edges, trimmed.slivers),
+                          "points must be spread over an area");
+  }
+  result.mesh = build_mesh(places, extent, std::move(trimmed.facets), findings);
+}
+
 }  // namespace
 
 prescription::Place place_of(const PointCloud& cloud, std::size_t point) {
@@ -109,29 +137,18 @@ std::string before_what(const PointCloud& cloud, std::size_t point) {
   return cloud.has_lines ? "" : name_of(cloud, point) + ": ";
 }
 
+bool has_legal_coordinates(const PointCloud& cloud) { return std::all_of(cloud.points.begin(), cloud.points.end(), is_legal); }
+
 Triangulation triangulate(const PointCloud& cloud, double max_edge) {
   Triangulation result;
-  Findings& findings = result.findings;
-  if (!coordinates_are_legal(cloud, findings)) return result;
-  // From here on points go by their numbers along the curve: what is near on the surface is near in memory.
-  const PointCloud places = distinct_places(cloud, findings);
-  if (findings.has_errors() || !spread_is_legal(places, findings)) return result;
-  std::vector<RawFacet> facets = delaunay(places.points);
-  const prescription::Place file{cloud.file};
-  if (facets.empty()) {
-    findings.error(file, "all points lie on one straight line in (x, y)", "a surface needs points on both sides of it");
-    return result;
-  }
-  Trimmed trimmed = trim(places, std::move(facets), max_edge);
-  if (trimmed.facets.empty()) {
-    findings.error(file,
-                   fmt::format("no facet is left between the points: {} touch a hole, {} have an edge longer than max_edge_mm, "
-                               "{} are slivers of the hull",
-                               trimmed.holes, trimmed.long_edges, trimmed.slivers),
-                   "points must be spread over an area");
-    return result;
-  }
-  result.mesh = build_mesh(places, extent_of(cloud), std::move(trimmed.facets), findings);
+  if (!coordinates_are_legal(cloud, result.findings)) return result;
+  triangulate_within(nullptr, cloud, extent_of(cloud), max_edge, result);
+  return result;
+}
+
+Triangulation triangulate_part(const PointCloud& cloud, const CloudExtent& extent, const Rectangle& window, double max_edge) {
+  Triangulation result;
+  triangulate_within(&window, cloud, extent, max_edge, result);
   return result;
 }
 

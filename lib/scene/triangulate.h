@@ -27,6 +27,7 @@
 #include <vector>
 
 #include "lib/prescription/point_cloud.h"
+#include "lib/scene/rectangle.h"
 #include "lib/surface/mesh.h"
 
 namespace sagitta::scene {
@@ -48,9 +49,40 @@ struct MeshStorage {
 struct Triangulation {
   std::shared_ptr<const MeshStorage> mesh;  // null exactly when there is an error among the findings
   prescription::Findings findings;          // at places in the cloud's file
+  std::size_t place_count = 0;              // that were triangulated
 };
 
 Triangulation triangulate(const prescription::PointCloud& cloud,
                           double max_edge = std::numeric_limits<double>::infinity());
+
+// Where the whole cloud lies. All that steers a ray depends on it, and not on the facets at hand: part of a cloud's facets
+// give a ray the same bits as all of them.
+struct CloudExtent {
+  Rectangle places;                // of all points, holes too
+  numerics::Vec3<double> low, high;  // of the points, holes not counted
+  numerics::Vec3<double> centre;   // medians, which a stray point far away does not move
+  double reach;                    // the largest distance of a coordinate from the centre's
+  surface::BaseSphere base;
+};
+CloudExtent extent_of(const prescription::PointCloud& cloud);
+
+// A part: the places within a window alone are triangulated, and of the facets those are kept that the triangulation of the
+// whole cloud has as well, and keeps. Their order, their corners and their planes are the same, bit for bit. That holds
+// because
+// - a facet whose closed circumdisc lies in the window is a facet of the whole: no other point is in the disc, and of points
+//   on its circle the tie is broken by these points alone. (The disc is computed to within 1e-9 of itself, and counts as
+//   1e-6 larger; a facet too thin for that is not taken.) If that goes for all facets around each of its corners, a facet is
+//   `known`: so are the edges at its corners, and whether it is a sliver;
+// - what is known and stays here stays in the whole: a facet is peeled only if it is a sliver and a chain of facets that
+//   went leads from it to the outside. The chain either is known to its end, or comes to a facet that is not known; as that
+//   counts as outside here, and what is known is judged here as there, the chain goes here too.
+// What is not known may be missing here, so a rim here need not be one of the whole cloud.
+// The coordinates are legal (within +-1e9 mm), `extent` is that of the whole cloud, and other findings are those of the
+// places in the window only.
+Triangulation triangulate_part(const prescription::PointCloud& cloud, const CloudExtent& extent, const Rectangle& window, double max_edge);
+bool has_legal_coordinates(const prescription::PointCloud& cloud);
+
+// The mesh without the facets that are marked; vertices keep their numbers.
+std::shared_ptr<const MeshStorage> without_facets(const MeshStorage& mesh, const std::vector<char>& is_dropped);
 
 }  // namespace sagitta::scene

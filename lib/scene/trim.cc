@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "lib/scene/mesh_internal.h"
 
@@ -19,30 +20,31 @@ double square_of_edge(const PointCloud& cloud, const RawFacet& facet, std::size_
 }
 
 // The mean length of the Delaunay edges at a corner of a facet: anticlockwise around it, and where the hull ends that
-// clockwise. Edges go by their facet and the end that they have anticlockwise of the corner's.
+// clockwise. Edges go by their facet and the end that they have anticlockwise of the corner's. Added up by size, so that the
+// bits do not depend on the facet it begins with.
 double mean_edge_length(const PointCloud& cloud, const std::vector<RawFacet>& facets, std::uint32_t first, std::uint32_t vertex) {
-  double sum = 0;
-  int count = 0;
+  std::vector<double> lengths;
+  const auto mean = [&] {
+    std::sort(lengths.begin(), lengths.end());
+    return std::accumulate(lengths.begin(), lengths.end(), 0.0) / static_cast<double>(lengths.size());
+  };
   const auto corner_in = [&](const RawFacet& facet) {
     return static_cast<std::size_t>(std::find(facet.corner.begin(), facet.corner.end(), vertex) - facet.corner.begin());
   };
-  const auto add = [&](const RawFacet& facet, std::size_t opposite) {
-    sum += std::sqrt(square_of_edge(cloud, facet, opposite % 3));
-    ++count;
-  };
+  const auto add = [&](const RawFacet& facet, std::size_t opposite) { lengths.push_back(std::sqrt(square_of_edge(cloud, facet, opposite % 3))); };
   for (std::uint32_t f = first;;) {
     const RawFacet& facet = facets[f];
     const std::size_t i = corner_in(facet);
     add(facet, i + 2);
     f = facet.neighbour[(i + 1) % 3];
-    if (f == first) return sum / count;
+    if (f == first) return mean();
     if (f != no_facet) continue;
     add(facet, i + 1);
     break;
   }
   for (std::uint32_t f = first;;) {
     f = facets[f].neighbour[(corner_in(facets[f]) + 2) % 3];
-    if (f == no_facet) return sum / count;
+    if (f == no_facet) return mean();
     add(facets[f], corner_in(facets[f]) + 2);
   }
 }
@@ -74,7 +76,8 @@ RawFacet from_widest_corner(const PointCloud& cloud, const RawFacet& facet) {
   return turned;
 }
 
-Trimmed trim(const PointCloud& cloud, std::vector<RawFacet> facets, double max_edge) {
+Trimmed trim(const PointCloud& cloud, std::vector<RawFacet> facets, double max_edge, const std::vector<char>& is_known) {
+  const auto is_outside = [&](std::size_t f) { return !is_known.empty() && !is_known[f]; };
   Trimmed trimmed;
   std::vector<char> gone(facets.size(), false), seen(facets.size(), false);
   for (std::size_t f = 0; f < facets.size(); ++f) {
@@ -82,7 +85,7 @@ Trimmed trim(const PointCloud& cloud, std::vector<RawFacet> facets, double max_e
     const auto& corner = facets[f].corner;
     const bool hole = std::any_of(corner.begin(), corner.end(), [&](std::uint32_t v) { return std::isnan(cloud.points[v].z); });
     const bool long_edge = !hole && square_of_edge(cloud, facets[f], 0) > max_edge * max_edge;
-    gone[f] = hole || long_edge;
+    gone[f] = hole || long_edge || is_outside(f);
     trimmed.holes += hole;
     trimmed.long_edges += long_edge;
   }
@@ -96,7 +99,7 @@ Trimmed trim(const PointCloud& cloud, std::vector<RawFacet> facets, double max_e
   };
   for (std::uint32_t f = 0; f < facets.size(); ++f) {
     const auto& neighbour = facets[f].neighbour;
-    if (std::find(neighbour.begin(), neighbour.end(), no_facet) != neighbour.end()) reach(f);
+    if (is_outside(f) || std::find(neighbour.begin(), neighbour.end(), no_facet) != neighbour.end()) reach(f);
   }
   std::vector<float> mean_lengths(cloud.points.size());  // of those that were asked for
   const auto mean_length = [&](std::uint32_t facet, std::uint32_t vertex) {

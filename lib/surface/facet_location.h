@@ -133,22 +133,23 @@ struct View {
   }
 };
 
-// Of the facets that share the edge or the vertex which the line passes through, the one of the lowest number.
+// Of the facets that share the edge or the vertex which the line passes through, the one of the lowest number: around the
+// vertex both ways, however many there are.
 template <class T>
 std::uint32_t lowest_of_touching(const Mesh& mesh, const View<T>& view, const Weighed<T>& passed) {
-  constexpr int most = 64;  // around a vertex
-  std::uint32_t touching[most] = {passed.facet}, lowest = passed.facet;
-  int count = 1;
-  for (int k = 0; k < count; ++k) {
-    const Weighed<T> facet = k == 0 ? passed : view.weigh(mesh, touching[k]);
-    for (int i = 0; i < 3; ++i) {
-      const std::uint32_t next = mesh.facets[touching[k]].neighbour[i];
-      if (facet.w[i] != T(0) || next == no_facet || count == most) continue;
-      bool known = false;
-      for (int j = 0; j < count; ++j) known = known || touching[j] == next;
-      if (known || !view.weigh(mesh, next).inside()) continue;
-      touching[count++] = next;
-      lowest = next < lowest ? next : lowest;
+  std::uint32_t lowest = passed.facet;
+  for (int i = 0; i < 3; ++i) {
+    if (passed.w[i] != T(0)) continue;
+    std::uint32_t before = passed.facet, at = mesh.facets[before].neighbour[i];
+    for (std::uint32_t step = 0; at != no_facet && at != passed.facet && step < mesh.facet_count; ++step) {
+      const Weighed<T> facet = view.weigh(mesh, at);
+      if (!facet.inside()) break;
+      lowest = at < lowest ? at : lowest;
+      std::uint32_t next = no_facet;  // across its other edge that the line passes through
+      for (int k = 0; k < 3; ++k)
+        if (facet.w[k] == T(0) && mesh.facets[at].neighbour[k] != before) next = mesh.facets[at].neighbour[k];
+      before = at;
+      at = next;
     }
   }
   return lowest;
