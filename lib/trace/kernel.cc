@@ -91,20 +91,16 @@ template <bool centred, Deflection deflection, class Shape>
     if constexpr (deflection == Deflection::reflect) out = surface::reflect(d, crossing.normal, crossing.along);
     const bool transmitted = out.x == out.x;  // not NaN
 
-    const Status status = !met           ? crossing.status
-                          : !open        ? Status::clipped
-                          : !transmitted ? Status::total_reflection
-                                         : Status::ok;
-    const std::int32_t end = status == Status::ok ? 0 : ending(setting.surface_number, status);
-    const bool turns = end == 0;
-    rays.x[i] = !travels ? old_start.x : met ? hit.x : start.x;
-    rays.y[i] = !travels ? old_start.y : met ? hit.y : start.y;
-    rays.z[i] = !travels ? old_start.z : met ? hit.z : start.z;
-    rays.l[i] = !travels ? old_d.x : turns ? out.x : d.x;
-    rays.m[i] = !travels ? old_d.y : turns ? out.y : d.y;
-    rays.n[i] = !travels ? old_d.z : turns ? out.z : d.z;
-    rays.opl[i] = travels & met ? opl + setting.index_before * crossing.path : opl;
-    rays.ended[i] = travels ? end : ended;
+    const bool moves = travels & met, turns = moves & open & transmitted;
+    rays.x[i] = moves ? hit.x : travels ? start.x : old_start.x;
+    rays.y[i] = moves ? hit.y : travels ? start.y : old_start.y;
+    rays.z[i] = moves ? hit.z : travels ? start.z : old_start.z;
+    rays.l[i] = turns ? out.x : travels ? d.x : old_d.x;
+    rays.m[i] = turns ? out.y : travels ? d.y : old_d.y;
+    rays.n[i] = turns ? out.z : travels ? d.z : old_d.z;
+    rays.opl[i] = moves ? opl + setting.index_before * crossing.path : opl;
+    const Status why_not = !met ? crossing.status : !open ? Status::clipped : Status::total_reflection;
+    rays.ended[i] = turns | !travels ? ended : ending(setting.surface_number, why_not);
   }
 }
 
