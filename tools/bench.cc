@@ -34,7 +34,7 @@
 namespace {
 
 using namespace sagitta;
-using bench::Medians, bench::median, bench::now;
+using bench::Medians, bench::median, bench::decimal, bench::now;
 
 constexpr double radius = 7.72, conic_constant = -0.26, gap = 0.5, beam_radius = 2, data_radius = 4;
 
@@ -208,7 +208,8 @@ void print_shapes(const Medians& medians) {
     const double one = million_per_second(medians, std::string(c.name) + one_thread);
     const double all = million_per_second(medians, std::string(c.name) + all_threads);
     if (std::isnan(one) && std::isnan(all)) continue;
-    rows += fmt::format("{:<20}{:>12.2f}{:>10.3f}{:>14.2f}{:>10.3f}\n", c.name, one, one / conic, all, all / conic);
+    rows += fmt::format("{:<20}{:>12}{:>10}{:>14}{:>10}\n", c.name, decimal(one, 2), decimal(one / conic, 3), decimal(all, 2),
+                        decimal(all / conic, 3));
   }
   if (rows.empty()) return;
   fmt::print("\nMillions of rays times surfaces per second, medians; ratio to the conic on one thread\n\n{:<20}{:>12}{:>10}{:>14}{:>10}\n{}",
@@ -244,15 +245,16 @@ void print_beside_embree(const Medians& medians) {
         const double rate = million_per_second(medians, embree_name(points, are_random, call));
         if (!(rate <= best) && !std::isnan(rate)) best = rate, best_call = call;
       }
-      rows += fmt::format("{:<8}{:<8}{:>8.2f}{:>8.2f}{:>11.2f}{:>9.2f}  {:<16}{:>13.2f}{:>10.2f}\n", points, are_random ? "random" : "bundle",
-                          linear, c1, c1 / linear, best, best_call, linear / best, c1 / best);
+      rows += fmt::format("{:<8}{:<8}{:>8}{:>8}{:>11}{:>9}  {:<16}{:>13}{:>11}\n", points, are_random ? "random" : "bundle",
+                          decimal(linear, 2), decimal(c1, 2), decimal(c1 / linear, 2), decimal(best, 2), best_call, decimal(linear / best, 2),
+                          decimal(c1 / best, 2));
     }
   if (rows.empty()) return;
   const std::string version = bench::embree_version();
   fmt::print("\nThe same points and rays, one thread, millions of rays per second, medians. Sagitta's linear and c1: in double\n"
              "precision, all that a surface does with a ray: hit, refraction, path, status. Embree: in single precision, the hit\n"
              "alone, from rays that lie ready in its own layout; of its calls the fastest. {}\n\n"
-             "{:<8}{:<8}{:>8}{:>8}{:>11}{:>9}  {:<16}{:>13}{:>10}\n{}",
+             "{:<8}{:<8}{:>8}{:>8}{:>11}{:>9}  {:<16}{:>13}{:>11}\n{}",
              version.empty() ? "Skipped: the build has found no Embree." : "This is " + version + ".", "points", "rays", "linear", "c1",
              "c1/linear", "Embree", "by", "linear/Embree", "c1/Embree", rows);
 }

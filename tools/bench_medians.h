@@ -2,6 +2,9 @@
 // The figures that the benchmarks' tables are made of.
 #pragma once
 
+#include <fmt/core.h>
+
+#include <cmath>
 #include <limits>
 #include <map>
 #include <string>
@@ -17,5 +20,8 @@ inline double median(const Medians& medians, const std::string& benchmark, const
   if (found == medians.end() || !found->second.contains(counter)) return std::numeric_limits<double>::quiet_NaN();
   return found->second.at(counter);
 }
+
+// "-" for what has not run.
+inline std::string decimal(double value, int digits) { return std::isnan(value) ? "-" : fmt::format("{:.{}f}", value, digits); }
 
 }  // namespace sagitta::bench

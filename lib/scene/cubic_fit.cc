@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "lib/numerics/instruction_set.h"
+
 namespace sagitta::scene {
 namespace {
 
@@ -59,7 +61,7 @@ template <std::size_t k>
   }
 }
 
-std::array<CubicFit, CubicFits::lanes> CubicFits::solve() {
+[[gnu::always_inline]] inline std::array<CubicFit, CubicFits::lanes> CubicFits::solve_inline() {
   const std::size_t row_count = *std::max_element(counts_.begin(), counts_.end());
   // Rows of zeros add nothing to any sum, to the bit.
   for (std::size_t lane = 0; lane < lanes; ++lane) {
@@ -115,6 +117,24 @@ std::array<CubicFit, CubicFits::lanes> CubicFits::solve() {
     }
   }
   return fits;
+}
+
+// The same body for each instruction set, as in trace/kernel.cc.
+std::array<CubicFit, CubicFits::lanes> CubicFits::solve_for_any() { return solve_inline(); }
+#if defined(__x86_64__)
+[[gnu::target("arch=x86-64-v3")]] std::array<CubicFit, CubicFits::lanes> CubicFits::solve_for_v3() { return solve_inline(); }
+[[gnu::target("arch=x86-64-v4")]] std::array<CubicFit, CubicFits::lanes> CubicFits::solve_for_v4() { return solve_inline(); }
+#endif
+
+std::array<CubicFit, CubicFits::lanes> CubicFits::solve() {
+#if defined(__x86_64__)
+  switch (numerics::instruction_set()) {
+    case numerics::InstructionSet::x86_64_v4: return solve_for_v4();
+    case numerics::InstructionSet::x86_64_v3: return solve_for_v3();
+    case numerics::InstructionSet::any: break;
+  }
+#endif
+  return solve_for_any();
 }
 
 }  // namespace sagitta::scene

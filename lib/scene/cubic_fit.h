@@ -45,7 +45,7 @@ struct CubicFit {
 // and their order alone.
 class CubicFits {
  public:
-  static constexpr std::size_t lanes = 2;
+  static constexpr std::size_t lanes = 8;
 
   // Next in this lane: V and the points around it.
   void put(std::size_t lane, const numerics::Vec3<double>& V, const numerics::Vec3<double>* points, std::span<const std::uint32_t> around);
@@ -54,7 +54,12 @@ class CubicFits {
 
  private:
   using Lanes [[gnu::vector_size(lanes * sizeof(double))]] = double;
-  using Row = std::array<Lanes, CubicFit::cubic_terms + 1>;  // the terms of (2), and the height
+  struct alignas(lanes * sizeof(double)) Row : std::array<Lanes, CubicFit::cubic_terms + 1> {};  // the terms of (2), and the height
+
+  std::array<CubicFit, lanes> solve_for_any();
+  std::array<CubicFit, lanes> solve_for_v3();
+  std::array<CubicFit, lanes> solve_for_v4();
+  std::array<CubicFit, lanes> solve_inline();
 
   template <std::size_t k>
   void eliminate(std::size_t row_count, Row& sums, std::array<Row, CubicFit::cubic_terms>& F);

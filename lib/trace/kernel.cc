@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lib/trace/kernel.h"
 
-#include <cstdlib>
-#include <string_view>
 #include <type_traits>
 
+#include "lib/numerics/instruction_set.h"
 #include "lib/surface/refraction.h"
 
 namespace sagitta::trace {
 namespace {
+
+using numerics::InstructionSet, numerics::instruction_set;
 
 enum class Deflection { none, refract, reflect };
 
@@ -191,19 +192,6 @@ void choose_deflection(Deflection deflection, const Shape& shape, const Setting&
 }
 
 }  // namespace
-
-InstructionSet instruction_set() {
-  static const InstructionSet chosen = [] {
-#if defined(__x86_64__)
-    const char* wanted = std::getenv("SAGITTA_ISA");
-    const std::string_view most = wanted ? wanted : "x86-64-v4";
-    if (most == "x86-64-v4" && __builtin_cpu_supports("x86-64-v4")) return InstructionSet::x86_64_v4;
-    if (most != "x86-64" && __builtin_cpu_supports("x86-64-v3")) return InstructionSet::x86_64_v3;
-#endif
-    return InstructionSet::any;
-  }();
-  return chosen;
-}
 
 void advance(const scene::Surface& surface, int surface_number, double index_before, double index_after,
              const RayColumns& rays, int ray_count) {
