@@ -6,8 +6,8 @@
 #include "tools/bench_preparation.h"
 
 #include <benchmark/benchmark.h>
+#include <fmt/core.h>
 
-#include <chrono>
 #include <cmath>
 #include <random>
 #include <string>
@@ -16,6 +16,7 @@
 #include "lib/scene/fit_patches.h"
 #include "lib/scene/triangulate.h"
 #include "lib/surface/conic.h"
+#include "tools/bench_clock.h"
 
 namespace sagitta::bench {
 namespace {
@@ -35,26 +36,26 @@ prescription::PointCloud cloud_of(int side, bool is_regular) {
 }
 
 template <class Work>
-double seconds_of(const Work& work) {
-  const auto before = std::chrono::steady_clock::now();
+double seconds_of(int thread_count, const Work& work) {
+  const double before = now(thread_count);
   work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
+  return now(thread_count) - before;
 }
 
 void measure(benchmark::State& state, int side, bool is_regular, int thread_count) {
   const prescription::PointCloud cloud = cloud_of(side, is_regular);
   double delaunay = 0, mesh = 0, patches = 0;
   for (auto _ : state) {
-    delaunay += seconds_of([&] {
+    delaunay += seconds_of(thread_count, [&] {
       std::vector<numerics::Vec3<double>> points;
       points.reserve(cloud.points.size());
       for (const std::uint32_t i : scene::along_curve(cloud.points)) points.push_back(cloud.points[i]);
       benchmark::DoNotOptimize(scene::delaunay(points).data());
     });
     scene::Triangulation made;
-    const double making = seconds_of([&] { made = scene::triangulate(cloud); });
+    const double making = seconds_of(thread_count, [&] { made = scene::triangulate(cloud); });
     if (!made.mesh) return state.SkipWithError("the points make no mesh");
-    const double fitting = seconds_of([&] { benchmark::DoNotOptimize(scene::fit_patches(made.mesh->mesh, thread_count).patches.data()); });
+    const double fitting = seconds_of(thread_count, [&] { benchmark::DoNotOptimize(scene::fit_patches(made.mesh->mesh, thread_count).patches.data()); });
     state.SetIterationTime(making + fitting);
     mesh += making;
     patches += fitting;
@@ -66,17 +67,42 @@ void measure(benchmark::State& state, int side, bool is_regular, int thread_coun
   state.counters["whole_per_delaunay"] = (mesh + patches) / delaunay;
 }
 
+std::string name_of(int side, bool is_regular, int thread_count) {
+  return std::string("preparation_") + (side == 1000 ? "1e6" : "1e5") + (is_regular ? "/regular" : "/random") +
+         (thread_count == 1 ? "/one_thread" : "/all_threads");
+}
+
+template <class Take>
+void for_each(const Take& take) {
+  for (const int side : {316, 1000})
+    for (const bool is_regular : {false, true})
+      for (const int thread_count : {1, 0}) take(side, is_regular, thread_count);
+}
+
 }  // namespace
 
 void register_preparation() {
-  for (const int side : {316, 1000})
-    for (const bool is_regular : {false, true})
-      for (const int thread_count : {1, 0}) {
-        const std::string name = std::string("preparation_") + (side == 1000 ? "1e6" : "1e5") + (is_regular ? "/regular" : "/random") +
-                                 (thread_count == 1 ? "/one_thread" : "/all_threads");
-        benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) { measure(state, side, is_regular, thread_count); })
-            ->UseManualTime()->Unit(benchmark::kMillisecond);
-      }
+  for_each([](int side, bool is_regular, int thread_count) {
+    benchmark::RegisterBenchmark(name_of(side, is_regular, thread_count).c_str(),
+                                 [=](benchmark::State& state) { measure(state, side, is_regular, thread_count); })
+        ->UseManualTime()->Unit(benchmark::kMillisecond);
+  });
+}
+
+void print_preparation(const Medians& medians) {
+  std::string rows;
+  for_each([&](int side, bool is_regular, int thread_count) {
+    const auto of = [&](const char* counter) { return median(medians, name_of(side, is_regular, thread_count), counter); };
+    if (std::isnan(of("delaunay_s"))) return;
+    rows += fmt::format("{:<8}{:<10}{:<9}{:>15.3f}{:>9.3f}{:>9.3f}{:>9.3f}{:>22.2f}\n", side == 1000 ? "1e6" : "1e5", is_regular ? "regular" : "random",
+                        thread_count == 1 ? "one" : "all", of("delaunay_s"), of("mesh_s"), of("c1_s"), of("mesh_s") + of("c1_s"),
+                        of("whole_per_delaunay"));
+  });
+  if (rows.empty()) return;
+  fmt::print("\nPreparation of a point cloud, seconds, medians: the triangulation alone; all that linear needs, the triangulation in\n"
+             "it; the patches of c1 on top; and the whole, also as a multiple of the triangulation\n\n"
+             "{:<8}{:<10}{:<9}{:>15}{:>9}{:>9}{:>9}{:>22}\n{}",
+             "points", "layout", "threads", "triangulation", "linear", "c1", "whole", "whole/triangulation", rows);
 }
 
 }  // namespace sagitta::bench

@@ -248,6 +248,7 @@ std::uint32_t search(const Mesh& mesh, const AimedLine<T>& line, Visited&& visit
 struct Walk {
   static constexpr int most_steps = 200;  // far more than any that does not go in circles
   static constexpr int most_leaps = 4;
+  static constexpr double leap_below = -2;  // where the least weight is less, the facet is far away
   std::uint32_t at = no_facet;
   int steps = 0, leaps = 0;
 };
@@ -257,7 +258,7 @@ struct Walk {
 template <class T>
 bool go_on(const Mesh& mesh, const AimedLine<T>& line, const Judgement<T>& judged, Walk& walk) {
   if (judged.verdict == Verdict::inside) return true;
-  if ((judged.least < T(-2) || !is_near(judged.path, T(mesh.extent))) && walk.leaps < Walk::most_leaps) {
+  if ((judged.least < T(Walk::leap_below) || !is_near(judged.path, T(mesh.extent))) && walk.leaps < Walk::most_leaps) {
     // far from here: not across one edge after another, but to the grid's facet there
     ++walk.leaps;
     const std::uint32_t there = mesh.grid.facet_near(double(line.o.x + judged.path * line.d.x), double(line.o.y + judged.path * line.d.y));

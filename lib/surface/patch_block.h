@@ -20,10 +20,11 @@ inline constexpr double patch_slack = 1e-12;
                                                 BlockOfCrossings& crossings, bool (&settled)[block_capacity]) {
   const int count = lines.count;
   const auto patch_of = [&](int i) -> const CloughTocherPatch& { return patches[flat.facet[i] == no_facet ? 0 : flat.facet[i]]; };
-  constexpr int ahead = 8;  // lines, while whose patches are on their way from memory
+  constexpr int ahead = 16;  // lines, while whose patches are on their way from memory
   const auto ask_for = [&](int i) {
     const char* const patch = reinterpret_cast<const char*>(&patch_of(i));
     for (std::size_t byte = 0; byte < sizeof(CloughTocherPatch); byte += 64) __builtin_prefetch(patch + byte);
+    __builtin_prefetch(patch + sizeof(CloughTocherPatch) - 1);  // a patch may begin anywhere in its first line
   };
   for (int i = 0; i < ahead && i < count; ++i) ask_for(i);
 

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lib/trace/kernel.h"
 
-#include <cstdlib>
-#include <string_view>
 #include <type_traits>
 
+#include "lib/numerics/instruction_set.h"
 #include "lib/surface/refraction.h"
 
 namespace sagitta::trace {
 namespace {
+
+using numerics::InstructionSet, numerics::instruction_set;
 
 enum class Deflection { none, refract, reflect };
 
@@ -91,20 +92,16 @@ template <bool centred, Deflection deflection, class Shape>
     if constexpr (deflection == Deflection::reflect) out = surface::reflect(d, crossing.normal, crossing.along);
     const bool transmitted = out.x == out.x;  // not NaN
 
-    const Status status = !met           ? crossing.status
-                          : !open        ? Status::clipped
-                          : !transmitted ? Status::total_reflection
-                                         : Status::ok;
-    const std::int32_t end = status == Status::ok ? 0 : ending(setting.surface_number, status);
-    const bool turns = end == 0;
-    rays.x[i] = !travels ? old_start.x : met ? hit.x : start.x;
-    rays.y[i] = !travels ? old_start.y : met ? hit.y : start.y;
-    rays.z[i] = !travels ? old_start.z : met ? hit.z : start.z;
-    rays.l[i] = !travels ? old_d.x : turns ? out.x : d.x;
-    rays.m[i] = !travels ? old_d.y : turns ? out.y : d.y;
-    rays.n[i] = !travels ? old_d.z : turns ? out.z : d.z;
-    rays.opl[i] = travels & met ? opl + setting.index_before * crossing.path : opl;
-    rays.ended[i] = travels ? end : ended;
+    const bool moves = travels & met, turns = moves & open & transmitted;
+    rays.x[i] = moves ? hit.x : travels ? start.x : old_start.x;
+    rays.y[i] = moves ? hit.y : travels ? start.y : old_start.y;
+    rays.z[i] = moves ? hit.z : travels ? start.z : old_start.z;
+    rays.l[i] = turns ? out.x : travels ? d.x : old_d.x;
+    rays.m[i] = turns ? out.y : travels ? d.y : old_d.y;
+    rays.n[i] = turns ? out.z : travels ? d.z : old_d.z;
+    rays.opl[i] = moves ? opl + setting.index_before * crossing.path : opl;
+    const Status why_not = !met ? crossing.status : !open ? Status::clipped : Status::total_reflection;
+    rays.ended[i] = turns | !travels ? ended : ending(setting.surface_number, why_not);
   }
 }
 
@@ -195,19 +192,6 @@ void choose_deflection(Deflection deflection, const Shape& shape, const Setting&
 }
 
 }  // namespace
-
-InstructionSet instruction_set() {
-  static const InstructionSet chosen = [] {
-#if defined(__x86_64__)
-    const char* wanted = std::getenv("SAGITTA_ISA");
-    const std::string_view most = wanted ? wanted : "x86-64-v4";
-    if (most == "x86-64-v4" && __builtin_cpu_supports("x86-64-v4")) return InstructionSet::x86_64_v4;
-    if (most != "x86-64" && __builtin_cpu_supports("x86-64-v3")) return InstructionSet::x86_64_v3;
-#endif
-    return InstructionSet::any;
-  }();
-  return chosen;
-}
 
 void advance(const scene::Surface& surface, int surface_number, double index_before, double index_after,
              const RayColumns& rays, int ray_count) {

@@ -13,9 +13,4 @@ namespace sagitta::trace {
 void advance(const scene::Surface& surface, int surface_number, double index_before, double index_after,
              const RayColumns& rays, int ray_count);
 
-// The instructions that the kernels use: the best of the machine's, or at most $SAGITTA_ISA (x86-64, x86-64-v3,
-// x86-64-v4). The results have the same bits with each; chosen at the first call.
-enum class InstructionSet { any, x86_64_v3, x86_64_v4 };
-InstructionSet instruction_set();
-
 }  // namespace sagitta::trace
