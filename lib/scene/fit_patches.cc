@@ -19,7 +19,7 @@ using surface::Mesh;
 
 constexpr std::size_t block_size = 2048;  // vertices or facets
 constexpr int least_rings = 2;
-constexpr double narrow = 8;                   // longest edge of a vertex over its shortest
+constexpr double narrow = 20;                   // longest edge of a vertex over its second shortest: both ways along a line
 constexpr std::size_t enough_points = 150;     // of many
 constexpr std::size_t most_points = 300;  // where a neighbourhood grows no more
 
@@ -65,21 +65,24 @@ class VertexFits {
     }
   }
 
-  double distance(std::uint32_t a, std::uint32_t b) const {
-    return std::hypot(mesh_.vertices[b].x - mesh_.vertices[a].x, mesh_.vertices[b].y - mesh_.vertices[a].y);
+  double square_of_distance(std::uint32_t a, std::uint32_t b) const {
+    const double dx = mesh_.vertices[b].x - mesh_.vertices[a].x, dy = mesh_.vertices[b].y - mesh_.vertices[a].y;
+    return dx * dx + dy * dy;
   }
 
   // Where points stand much nearer to each other along a line than across it, rings are long and narrow: the slope along it
   // would come from its nearest points alone, with all that the far ones ahead and behind lack of a cubic. Then all points
   // within the longest edge count, thinned out evenly (their numbers run along a curve).
   void widen(std::uint32_t vertex) {
-    double shortest = std::numeric_limits<double>::infinity(), longest = 0;
+    double shortest = std::numeric_limits<double>::infinity(), second = shortest, longest = 0;  // squares
     for (const std::uint32_t next : neighbours_.of(vertex)) {
-      shortest = std::min(shortest, distance(vertex, next));
-      longest = std::max(longest, distance(vertex, next));
+      const double square = square_of_distance(vertex, next);
+      second = std::min(second, std::max(shortest, square));
+      shortest = std::min(shortest, square);
+      longest = std::max(longest, square);
     }
-    if (!(longest > narrow * shortest)) return;
-    rings_.add_all([&](std::uint32_t next) { return distance(vertex, next) <= longest; });
+    if (!(longest > narrow * narrow * second)) return;
+    rings_.add_all([&](std::uint32_t next) { return square_of_distance(vertex, next) <= longest; });
   }
   void thin_out() {
     const std::size_t stride = 1 + sorted_.size() / enough_points;
