@@ -23,10 +23,11 @@
 // point is taken.
 //
 // On an edge or a vertex several facets count as passed through; the one of the lowest number answers, whichever way the
-// walk came.
+// walk came. (A line may also pass through several facets apart from each other, where the surface is steeper than the line:
+// a walk answers with the first that it comes to.)
 //
 // The guard. Stored floats are off by 2^-24 of themselves, the place (x, y) by 2^-24 of the extent E; X - x is below 2 E. So
-// a weight is known to 2^-22 E (|u_x| + |u_y| + |v_x| + |v_y|), the guard of a facet, with room for half as much. The
+// a weight is known to 2^-22 E (|u_x| + |u_y| + |v_x| + |v_y|), the guard of a facet, with room for a third more. The
 // rounding of (1) needs less than that room while t is short (2^-6 E) and along > 2^-20 (1 + |slope_x| + |slope_y|):
 // beyond these the exact test decides.
 //
