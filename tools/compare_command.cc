@@ -56,13 +56,13 @@ std::vector<ComparedModel> load_models(const std::vector<std::string>& files) {
 
 // Wavelengths, fields, object and beam of the first; false, with a message, where a medium does not reach so far.
 bool take_rays_of(const Model& first, const scene::LaunchPupil& pupil, Model& model) {
+  model.object = first.object;
   std::vector<double> needed = first.wavelengths_nm;
   needed.push_back(first.primary_wavelength_nm());
   if (!set_wavelengths(model, needed, fmt::format("compare: {}, by the rays of {}", model.file, first.file))) return false;
   model.wavelengths_nm = first.wavelengths_nm;
   model.primary_nm = first.primary_nm;
   model.fields = first.fields;
-  model.object.distance_mm = first.object.distance_mm;
   model.aperture.kind = first.aperture.kind;
   model.aperture.value = first.aperture.value;
   if (!pupil.telecentric) {

@@ -27,6 +27,7 @@ ordered_json difference_json(const Report& report, std::size_t i, const analysis
   if (const auto& wavefront = difference.wavefront) {
     json["wavefront"] = {{"mean_waves", wavefront->mean_waves},
                          {"rms_waves", wavefront->rms_waves},
+                         {"rms_without_tilt_waves", wavefront->rms_without_tilt_waves},
                          {"peak_to_valley_waves", wavefront->peak_to_valley_waves},
                          {"samples", wavefront->in_both},
                          {"samples_only_in_first", wavefront->only_in_first},
@@ -49,7 +50,8 @@ Table main_table(const Comparison& comparison) {
   Table table{{{"field", ""}, {"x", field_unit}, {"y", field_unit}, {"wavelength", "nm"}, {"system", "", true}, {"ok", ""}, {"lost", ""}}, {}};
   if (covers) table.columns.push_back({"coverage", "%"});
   for (const Column& column : std::initializer_list<Column>{{"RMS radius", "um"}, {"change", "um"}, {"change", "%"}, {"OPD RMS", "waves"},
-                                                            {"OPD P-V", "waves"}, {"change RMS", "waves"}, {"change P-V", "waves"}})
+                                                            {"OPD P-V", "waves"}, {"change RMS", "waves"},
+                                                            {"without tilt", "waves"}, {"change P-V", "waves"}})
     table.columns.push_back(column);
   if (fits) table.columns.push_back({"fit RMS", "um"});
   for (std::size_t i = 0; i < first.results.size(); ++i)
@@ -70,6 +72,7 @@ Table main_table(const Comparison& comparison) {
       row.push_back(wavefront ? significant(wavefront->rms_waves) : "-");
       row.push_back(wavefront ? significant(wavefront->peak_to_valley_waves) : "-");
       row.push_back(is_first ? "" : difference.wavefront ? significant(difference.wavefront->rms_waves) : "-");
+      row.push_back(is_first ? "" : difference.wavefront ? significant(difference.wavefront->rms_without_tilt_waves) : "-");
       row.push_back(is_first ? "" : difference.wavefront ? significant(difference.wavefront->peak_to_valley_waves) : "-");
       if (system.fit) row.push_back(significant(system.fit->residual_rms_um));
       table.rows.push_back(std::move(row));

@@ -55,6 +55,7 @@ TEST(CompareCommand, a_system_differs_from_itself_by_nothing) {
     EXPECT_EQ(result["spot"]["centroid_shift_mm"], json({0, 0}));
     const json& wavefront = result["wavefront"];
     EXPECT_EQ(wavefront["rms_waves"], 0);
+    EXPECT_EQ(wavefront["rms_without_tilt_waves"], 0);
     EXPECT_EQ(wavefront["peak_to_valley_waves"], 0);
     EXPECT_EQ(wavefront["samples"], 3001);
     EXPECT_EQ(wavefront["samples_only_in_first"], 0);
@@ -118,6 +119,16 @@ TEST(CompareCommand, the_rays_are_those_of_the_first_system) {
   EXPECT_NE(traced(c, "--rays 400")["results"][2]["spot"], summary["systems"][2]["results"][2]["spot"]);  // alone its beam differs
 }
 
+TEST(CompareCommand, the_medium_before_every_system_is_that_of_the_first) {
+  const Folder folder;
+  const std::string eye = systems + "navarro-eye.yaml", in_water = folder.file("water.yaml", "extends: " + eye + "\nname: In water\nobject: {medium: {index: 1.33}}\n");
+  for (const std::string& both : {eye + " " + in_water, in_water + " " + eye}) {
+    const json summary = compared(both + " --rays 300");
+    EXPECT_EQ(summary["systems"][0]["results"], summary["systems"][1]["results"]) << both;
+    EXPECT_EQ(summary["systems"][0]["first_order"], summary["systems"][1]["first_order"]) << both;
+  }
+}
+
 TEST(CompareCommand, a_finite_object_of_the_first_is_before_every_system) {
   const Folder folder;
   const std::string top = "wavelengths_nm: [550]\naperture: {object_na: 0.02}\nfields: {object_heights_mm: [[0, 0], [2, 3]]}\nobject: {distance_mm: 100}\n";
@@ -169,6 +180,7 @@ TEST(CompareCommand, the_parts_hold_every_system_and_every_difference) {
       EXPECT_EQ(difference.text("units.Y"), "waves");
       EXPECT_THAT(difference.text("sign"), HasSubstr("OPD(system) - OPD(first_system)"));
       EXPECT_EQ(difference.number("rms_waves"), told["rms_waves"].get<double>());
+      EXPECT_EQ(difference.number("rms_without_tilt_waves"), told["rms_without_tilt_waves"].get<double>());
       // spots at one scale
       EXPECT_EQ(by_name["lens-a.spot." + at]->pair("pixel_size_mm").x, by_name["lens-b.spot." + at]->pair("pixel_size_mm").x);
     }
