@@ -60,9 +60,12 @@ ParsedVariant parse_variant(const std::string& text) {
 }
 
 std::optional<double> footprint_radius(const prescription::Model& model, int number) {
-  const auto compiled = load_scene(model);
-  if (!compiled) return std::nullopt;
-  const scene::Scene& scene = *compiled->scene;
+  const scene::CompileResult compiled = scene::compile(model);  // its notes are of a surface that is not compared
+  if (!compiled.scene) {
+    report(prescription::in_order(compiled.findings, model.documents));
+    return std::nullopt;
+  }
+  const scene::Scene& scene = *compiled.scene;
   const auto pupil = trace::pupil_points({trace::PatternKind::hexapolar}, 2000);
   std::optional<double> radius;
   for (const scene::Field& field : scene.fields)
@@ -91,9 +94,13 @@ std::vector<ComparedModel> make_variants(const prescription::Model& system, cons
     return {};
   }
   Findings findings;
-  const Shape points = prescription::make_shape(
+  Shape points = prescription::make_shape(
       "delaunay", {{"points", request.points}, {"format", request.format}, {"axes", request.axes}}, on_command_line, findings);
   if (!report(findings) || !points.cloud) return {};
+  auto& numbers = points.parameters.numbers;
+  if (surface->shape.kind == points.kind) numbers = surface->shape.parameters.numbers;
+  if (request.smoothing_um) numbers["smoothing_um"] = *request.smoothing_um;
+  if (request.max_edge_mm) numbers["max_edge_mm"] = *request.max_edge_mm;
 
   const std::size_t at = static_cast<std::size_t>(surface - system.surfaces.begin());
   std::optional<double> radius = request.radius_mm;

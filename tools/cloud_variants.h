@@ -28,6 +28,7 @@ struct VariantRequest {
   std::string points, format, axes;  // as in the prescription
   std::vector<VariantKind> kinds;
   std::optional<double> radius_mm;   // of the Zernike fits
+  std::optional<double> smoothing_um, max_edge_mm;  // of the points as they are traced
 };
 
 // A system to compare, under a name of its own.
@@ -41,7 +42,8 @@ struct ComparedModel {
 // the surface's axis, mm. None where no ray gets there.
 std::optional<double> footprint_radius(const prescription::Model& model, int number);
 
-// The Zernike fits are over the circle of `radius_mm`, or else over the beam's footprint on the system's own surface and
+// What is not asked for of the tracing of the points (smoothing, longest edge, radial functions) is as in the points that they
+// stand for, where the surface is made of points already. The Zernike fits are to the points as measured, over the circle of `radius_mm`, or else over the beam's footprint on the system's own surface and
 // 5 % more, as far as the data reach. Empty, after printing what is wrong, where one cannot be made.
 std::vector<ComparedModel> make_variants(const prescription::Model& system, const VariantRequest& request);
 

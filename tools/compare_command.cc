@@ -150,7 +150,7 @@ int compare_command(const CompareOptions& options) {
   std::string title;
   if (!kinds.empty()) {
     title = fmt::format("{}, {} from {}", models.front().name, options.surface, fs::path(options.points).filename().string());
-    models = make_variants(models.front().model, {options.surface, options.points, options.format, options.axes, kinds, options.radius_mm});
+    models = make_variants(models.front().model, {options.surface, options.points, options.format, options.axes, kinds, options.radius_mm, options.smoothing_um, options.max_edge_mm});
     if (models.empty()) return 1;
   }
   make_names_unique(models);

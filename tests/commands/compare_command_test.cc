@@ -301,6 +301,38 @@ TEST(CompareCommand, a_fitted_variant_is_the_shape_that_fit_gives) {
   EXPECT_EQ(summary["systems"][0]["fit"]["radius_mm"], 2.5);
 }
 
+TEST(CompareCommand, the_points_are_traced_as_those_that_they_stand_for_or_as_is_said) {
+  const Folder folder;
+  const std::string own = "extends: " + systems + "eye-with-measured-cornea.yaml\nsurfaces:\n  - {name: anterior cornea, delaunay: {points: " + systems + "measured-cornea.xyz, axes: osa, ";
+  const std::string with = " --surface 'anterior cornea' --with " + systems + "measured-cornea.xyz --axes osa --rays 300 --as ";
+  const std::string smoothed = folder.file("smoothed.yaml", own + "smoothing_um: 0.05}}\n"), raw = folder.file("raw.yaml", own + "max_edge_mm: 5}}\n");
+  const json of_smoothed = traced(smoothed, "--rays 300"), variants = compared(smoothed + with + "delaunay,zernike:36");
+  ASSERT_EQ(of_smoothed["smoothing"].size(), 1u);
+  EXPECT_EQ(variants["systems"][0]["results"], of_smoothed["results"]);
+  EXPECT_EQ(variants["systems"][0]["smoothing"], of_smoothed["smoothing"]);
+  // by the command line, whatever the surface itself is
+  EXPECT_EQ(compared(raw + with + "delaunay,zernike:36 --smoothing-um 0.05")["systems"][0]["results"], of_smoothed["results"]);
+  EXPECT_EQ(compared(systems + "navarro-eye.yaml" + with + "delaunay,zernike:36 --smoothing-um 0.05")["systems"][0]["smoothing"], of_smoothed["smoothing"]);
+  EXPECT_FALSE(compared(smoothed + with + "delaunay,zernike:36 --smoothing-um 0")["systems"][0].contains("smoothing"));
+  // the longest edge: none is left of 0.01 mm; the surface's own and the option's
+  const std::string short_edges = folder.file("short.yaml", own + "max_edge_mm: 0.01}}\n");
+  for (const std::string& arguments : {raw + with + "delaunay,zernike:36 --radius-mm 3 --max-edge-mm 0.01", short_edges + with + "delaunay,zernike:36 --radius-mm 3"}) {
+    const Outcome run = run_program("compare " + arguments + " -o " + folder.path("out"));
+    EXPECT_EQ(run.status, 1) << arguments;
+    EXPECT_THAT(run.err, HasSubstr("edge longer than max_edge_mm")) << arguments;
+  }
+  // the radial functions
+  const std::string flat = folder.file("flat.yaml", own + "interpolation: multiquadric, rings: 1, shape_mm: 2}}\n");
+  EXPECT_EQ(compared(flat + with + "delaunay:multiquadric,delaunay")["systems"][0]["results"], traced(flat, "--rays 300")["results"]);
+  // no word of smoothing where nothing smoothed is traced
+  EXPECT_THAT(run_program("compare " + smoothed + with + "zernike:15,zernike:36 -o " + folder.path("out")).err, testing::Not(HasSubstr("smoothed")));
+  const std::string notes = run_program("compare " + smoothed + with + "delaunay,zernike:36 -o " + folder.path("out")).err;
+  EXPECT_EQ(notes.find("note: smoothed"), notes.rfind("note: smoothed"));
+  EXPECT_THAT(notes, HasSubstr("note: smoothed"));
+  for (const char* option : {"--smoothing-um -1", "--smoothing-um nan", "--max-edge-mm 0", "--max-edge-mm nan", "--radius-mm nan"})
+    EXPECT_EQ(run_program("compare " + raw + with + "delaunay,zernike:36 " + option + " -o " + folder.path("out")).status, 2) << option;
+}
+
 TEST(CompareCommand, a_fit_goes_no_farther_than_the_data) {
   const Folder folder;
   std::string points;

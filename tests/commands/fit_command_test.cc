@@ -159,7 +159,7 @@ TEST(FitCommand, refuses_with_a_reason_and_writes_nothing) {
   EXPECT_THAT(reach.err, HasSubstr("do not tell 36 terms over all of the circle: the outermost lies 3.6 mm from the origin\n  hint: take a radius of 3.6 mm or less\n"));
   EXPECT_EQ(run_program("fit " + folder.path("none.xyz")).status, 1);
   EXPECT_EQ(run_program("fit").status, 2);
-  for (const char* options : {"--terms 0", "--terms 2000", "--indexing fringe --terms 38", "--indexing born", "--format dxf", "--axes left", "--radius-mm 0", "--radius-mm -1", "--axes osa --format cso"}) {
+  for (const char* options : {"--terms 0", "--terms 2000", "--indexing fringe --terms 38", "--indexing born", "--format dxf", "--axes left", "--radius-mm 0", "--radius-mm -1", "--radius-mm nan", "--axes osa --format cso"}) {
     const Outcome run = run_program("fit " + shipped + " " + options);
     EXPECT_EQ(run.status, 2) << options;
     EXPECT_NE(run.err, "") << options;
@@ -168,6 +168,33 @@ TEST(FitCommand, refuses_with_a_reason_and_writes_nothing) {
   EXPECT_EQ(name.status, 2);
   EXPECT_THAT(name.err, HasSubstr("expected FILE.yaml"));
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
+}
+
+TEST(FitCommand, never_overwrites_its_points) {
+  const Folder folder;
+  std::filesystem::copy_file(shipped, folder.path("p.yaml"));
+  std::filesystem::copy_file(shipped, folder.path("q.png"));
+  std::filesystem::create_symlink("p.yaml", folder.path("link.yaml"));
+  const std::string before = read_text(folder.path("p.yaml"));
+  for (const std::string& both : {"p.yaml -o " + folder.path("p.yaml"), "p.yaml -o " + folder.path("./p.yaml"), "p.yaml -o " + folder.path("link.yaml"), "link.yaml -o " + folder.path("p.yaml"),
+                                  "q.png -o " + folder.path("q.yaml")}) {
+    const Outcome run = run_program("fit " + folder.path(both));
+    EXPECT_EQ(run.status, 2) << both;
+    EXPECT_EQ(run.out, "") << both;
+    EXPECT_THAT(run.err, HasSubstr("is the file of the points, which would be overwritten")) << both;
+  }
+  EXPECT_EQ(read_text(folder.path("p.yaml")), before);
+  EXPECT_EQ(read_text(folder.path("q.png")), before);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 3);
+}
+
+TEST(FitCommand, leaves_no_fragment_where_a_picture_cannot_be_written) {
+  const Folder folder;
+  std::filesystem::create_directory(folder.path("fit.png"));
+  const Outcome run = run_program("fit " + shipped + " -o " + folder.path("fit.yaml"));
+  EXPECT_EQ(run.status, 1);
+  EXPECT_THAT(run.err, HasSubstr("fit.png"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path("fit.yaml")));
 }
 
 // A plane has no radius: null in JSON, .inf in the shape, which is a prescription's word for it.
