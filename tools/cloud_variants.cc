@@ -39,6 +39,14 @@ std::vector<std::string> interpolations() {
   return numerics::words_of(key->choices);
 }
 
+// The rays where the surface `number` leaves them.
+trace::RayBatch rays_at(const scene::Scene& scene, const scene::Field& field, const scene::Wavelength& wavelength,
+                        std::span<const trace::PupilPoint> pupil, int number) {
+  trace::RayBatch rays = launch(scene, field, wavelength.index.front(), pupil);
+  for (int surface = 1; surface <= number; ++surface) trace_surface(scene, wavelength, surface, rays);
+  return rays;
+}
+
 }  // namespace
 
 ParsedVariant parse_variant(const std::string& text) {
@@ -70,12 +78,24 @@ std::optional<double> footprint_radius(const prescription::Model& model, int num
   std::optional<double> radius;
   for (const scene::Field& field : scene.fields)
     for (const scene::Wavelength& wavelength : scene.wavelengths) {
-      trace::RayBatch rays = launch(scene, field, wavelength.index.front(), pupil);
-      for (int surface = 1; surface <= number; ++surface) trace_surface(scene, wavelength, surface, rays);
+      const trace::RayBatch rays = rays_at(scene, field, wavelength, pupil, number);
       for (std::size_t i = 0; i < rays.size(); ++i)
         if (rays.ended[i] == 0) radius = std::max(radius.value_or(0), std::hypot(rays.x[i], rays.y[i]));
     }
   return radius;
+}
+
+double share_within(const scene::Scene& scene, const scene::Field& field, const scene::Wavelength& wavelength,
+                    std::span<const trace::PupilPoint> pupil, int number, double radius_mm) {
+  const trace::RayBatch rays = rays_at(scene, field, wavelength, pupil, number);
+  std::int64_t reaching = 0, within = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (rays.ended[i] != 0 && rays.ended_at(i) != number) continue;
+    ++reaching;
+    const bool meets = rays.ended[i] == 0 || rays.status(i) == surface::Status::clipped || rays.status(i) == surface::Status::total_reflection;
+    within += meets && std::hypot(rays.x[i], rays.y[i]) <= radius_mm;
+  }
+  return static_cast<double>(within) / static_cast<double>(reaching);
 }
 
 std::vector<ComparedModel> make_variants(const prescription::Model& system, const VariantRequest& request) {
@@ -130,7 +150,7 @@ std::vector<ComparedModel> make_variants(const prescription::Model& system, cons
       }
       shape = zernike_shape(*fit.surface);
       shape.place = on_command_line;
-      variant.fit = output::FitQuality{kind.terms, *radius, fit.surface->rms_um};
+      variant.fit = output::FitQuality{kind.terms, *radius, fit.surface->rms_um, static_cast<int>(at) + 1};
     }
     variants.push_back(std::move(variant));
   }

@@ -3,11 +3,14 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "lib/output/comparison.h"
 #include "lib/prescription/model.h"
+#include "lib/scene/scene.h"
+#include "lib/trace/pattern.h"
 
 namespace sagitta::tools {
 
@@ -41,6 +44,11 @@ struct ComparedModel {
 // Where the beam of the system meets its surface `number` (traced, all fields and wavelengths): the greatest distance from
 // the surface's axis, mm. None where no ray gets there.
 std::optional<double> footprint_radius(const prescription::Model& model, int number);
+
+// Of the rays of a field and wavelength that reach the surface `number`, the share that meets it within `radius_mm` of its
+// axis; NaN where none reaches it.
+double share_within(const scene::Scene& scene, const scene::Field& field, const scene::Wavelength& wavelength,
+                    std::span<const trace::PupilPoint> pupil, int number, double radius_mm);
 
 // What is not asked for of the tracing of the points (smoothing, longest edge, radial functions) is as in the points that they
 // stand for, where the surface is made of points already. The Zernike fits are to the points as measured, over the circle of `radius_mm`, or else over the beam's footprint on the system's own surface and

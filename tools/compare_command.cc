@@ -93,10 +93,24 @@ CompiledSystems compile_all(std::vector<ComparedModel>& models) {
   return result;
 }
 
+constexpr std::int64_t most_rays_of_a_share = 10000;  // a share of the beam to some 0.01 %
+
+// What share of the beam lies where the points told the fit what to do. Beyond the circle the surface is extrapolated.
+void add_coverage(const scene::Scene& scene, const output::FitQuality& fit, const analysis::JobRequest& request, std::vector<analysis::JobResult>& results) {
+  const auto pupil = trace::pupil_points(request.pattern, std::min(request.ray_count, most_rays_of_a_share));
+  for (analysis::JobResult& result : results) {
+    const double share = share_within(scene, scene.fields[result.field], scene.wavelengths[result.wavelength], pupil, fit.surface_number, fit.radius_mm);
+    const auto before = std::find_if(result.coverage.begin(), result.coverage.end(), [&](const auto& one) { return one.surface_number > fit.surface_number; });
+    result.coverage.insert(before, {fit.surface_number, share});
+  }
+}
+
 output::Comparison compare(const std::vector<ComparedModel>& models, CompiledSystems compiled, const analysis::JobRequest& request) {
   output::Comparison comparison;
   auto& [reports, scenes] = compiled;
-  const auto results = run_with_progress(scenes, request);
+  auto results = run_with_progress(scenes, request);
+  for (std::size_t i = 0; i < models.size(); ++i)
+    if (models[i].fit) add_coverage(scenes[i], *models[i].fit, request, results[i]);
   const std::vector<std::string> slugs = unique_slugs(models);
   for (std::size_t i = 0; i < models.size(); ++i) {
     reports[i].results = results[i];
