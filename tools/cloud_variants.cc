@@ -49,7 +49,8 @@ trace::RayBatch rays_at(const scene::Scene& scene, const scene::Field& field, co
 
 }  // namespace
 
-ParsedVariant parse_variant(const std::string& text) {
+ParsedVariant parse_variant(std::string text) {
+  text.erase(0, std::min(text.find_first_not_of(' '), text.size()));  // "delaunay, zernike:36"
   const std::size_t colon = std::min(text.find(':'), text.size());
   const std::string kind = text.substr(0, colon), rest = text.substr(std::min(colon + 1, text.size()));
   if (kind == "delaunay") {

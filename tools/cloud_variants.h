@@ -24,7 +24,7 @@ struct ParsedVariant {
   std::optional<VariantKind> kind;
   std::string fault;  // why there is none
 };
-ParsedVariant parse_variant(const std::string& text);
+ParsedVariant parse_variant(std::string text);
 
 struct VariantRequest {
   std::string surface;               // its name in the system

@@ -124,9 +124,12 @@ output::Comparison compare(const std::vector<ComparedModel>& models, CompiledSys
 
 bool write_all(const fs::path& folder, const output::Comparison& comparison, const std::string& summary) {
   const std::vector<output::Figure> figures = sheets(comparison);
+  const auto sheet_of = [&](std::size_t field) { return folder / fmt::format("comparison.field{}.png", field); };
+  std::error_code none_there;
+  for (std::size_t field = figures.size(); fs::remove(sheet_of(field), none_there); ++field) {}  // of an earlier run
   bool all_written = write_image("compare", folder / "comparison", parts(comparison), figures.front());
   for (std::size_t field = 1; field < figures.size(); ++field)
-    all_written &= written("compare", output::write_png((folder / fmt::format("comparison.field{}.png", field)).string(), render(figures[field])));
+    all_written &= written("compare", output::write_png(sheet_of(field).string(), render(figures[field])));
   return written("compare", output::write_file((folder / "summary.json").string(), summary)) && all_written;
 }
 

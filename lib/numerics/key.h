@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -32,12 +33,11 @@ struct Range {
   bool infinite = false;   // +-infinity is legal (where low and high allow it)
   bool whole = false;      // only whole numbers are legal
 
-  constexpr bool contains(double v) const {
+  bool contains(double v) const {
     const bool inside = open ? (v > low && v < high) : (v >= low && v <= high);
     const bool is_infinite = v == std::numeric_limits<double>::infinity() || v == -std::numeric_limits<double>::infinity();
     if (is_infinite) return infinite && v >= low && v <= high;
-    const bool is_fraction = whole && v != static_cast<double>(static_cast<long long>(inside ? v : 0));
-    return inside && (zero || v != 0) && !is_fraction;
+    return inside && (zero || v != 0) && (!whole || v == std::trunc(v));
   }
 };
 inline constexpr Range any_number{};

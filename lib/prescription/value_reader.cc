@@ -46,6 +46,7 @@ std::string shown(const YamlNode& node) {
     case YamlNode::Kind::scalar:
       break;
   }
+  if (node.text.empty()) return "an empty text";
   return fmt::format("{}'{}'", node.quoted ? "the text " : "", excerpt(node.text));
 }
 

@@ -197,6 +197,25 @@ TEST(FitCommand, leaves_no_fragment_where_a_picture_cannot_be_written) {
   EXPECT_FALSE(std::filesystem::exists(folder.path("fit.yaml")));
 }
 
+// Of z = r^4/2500 + r^2/500, 0.26 mm at 4.5 mm: c = 1/250, and q = 8 (1/2500)/c - ... is some 0.8, so 1 + K = q/c^2 is some 5e4.
+TEST(FitCommand, says_where_the_conic_is_but_the_sphere) {
+  const Folder folder;
+  std::string points;
+  for (int i = -9; i <= 9; ++i)
+    for (int j = -9; j <= 9; ++j) {
+      const double u = 0.25 * (i * i + j * j);
+      points += std::to_string(0.5 * i) + " " + std::to_string(0.5 * j) + " " + std::to_string(u / 500 + u * u / 2500) + "\n";
+    }
+  const std::string command = "fit " + folder.file("steep.xyz", points) + " --terms 10 --radius-mm 4";
+  const json found = json::parse(run_program(command + " --json").out);
+  EXPECT_EQ(found["conic"]["is_sphere"], true);
+  EXPECT_EQ(found["conic"]["radius_mm"], found["sphere"]["radius_mm"]);
+  EXPECT_THAT(run_program(command + " -o " + folder.path("f.yaml")).out, HasSubstr("\nthe points tell no conic constant from -100 to 100: the conic is the sphere\n"));
+  EXPECT_THAT(read_text(folder.path("f.yaml")), HasSubstr("# A surface's shape: the best-fit sphere of "));
+  EXPECT_EQ(json::parse(run_program("fit " + shipped + " --json").out)["conic"]["is_sphere"], false);
+  EXPECT_THAT(run_program("fit " + shipped).out, testing::Not(HasSubstr("the conic is the sphere")));
+}
+
 // A plane has no radius: null in JSON, .inf in the shape, which is a prescription's word for it.
 TEST(FitCommand, says_of_a_plane_that_its_radius_is_infinite) {
   const Folder folder;
