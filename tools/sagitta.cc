@@ -29,7 +29,7 @@ CLI::Validator from_to(double low, double high) {
     const bool inside = CLI::detail::lexical_cast(text, value) && value >= low && value <= high;
     return inside ? std::string() : fmt::format("{} is not a number from {:g} to {:g}", text, low, high);
   };
-  return {fault, fmt::format("FLOAT from {:g} to {:g}", low, high)};
+  return {fault, fmt::format("FLOAT in [{:g} - {:g}]", low, high)};
 }
 
 CLI::IsMember one_of(std::string_view choices) { return CLI::IsMember(sagitta::numerics::words_of(choices)); }

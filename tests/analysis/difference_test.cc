@@ -66,6 +66,13 @@ TEST(Difference, without_tilt_is_what_no_plane_takes) {
   EXPECT_NEAR(d.rms_without_tilt_waves, std::sqrt(squares / count), 2e-14);
   EXPECT_NEAR(d.without_tilt_waves[8], 0.1 * (0.0625 * 0.0625 - 0.9375 * 0.9375), 2e-14);
   EXPECT_TRUE(std::isnan(d.without_tilt_waves[0]));
+  // over a part where 1, x and y are far from orthogonal, a plane still goes as a whole
+  for (std::size_t i = 0; i < other.opd_waves.size(); ++i) {
+    const double x = (static_cast<double>(i % size) - 7.5) / 8, y = (7.5 - static_cast<double>(i / size)) / 8;
+    other.opd_waves[i] = x + 0.5 * y < -0.1 ? first.opd_waves[i] + 0.25 + 10 * x - 4 * y : nan;
+  }
+  EXPECT_GT(wavefront_difference(other, first).rms_waves, 1);
+  EXPECT_NEAR(wavefront_difference(other, first).rms_without_tilt_waves, 0, 2e-14);
 }
 
 TEST(Difference, does_not_exist_where_no_sample_is_in_both) {

@@ -197,7 +197,7 @@ TEST(FitCommand, leaves_no_fragment_where_a_picture_cannot_be_written) {
   EXPECT_FALSE(std::filesystem::exists(folder.path("fit.yaml")));
 }
 
-// Of z = r^4/2500 + r^2/500, 0.26 mm at 4.5 mm: c = 1/250, and q = 8 (1/2500)/c - ... is some 0.8, so 1 + K = q/c^2 is some 5e4.
+// z = u/500 + u^2/2500 is c u/2 + q c u^2/8 with c = 1/250 and q = 0.8: 1 + K = q/c^2 = 5e4, no conic that reaches the rim.
 TEST(FitCommand, says_where_the_conic_is_but_the_sphere) {
   const Folder folder;
   std::string points;
