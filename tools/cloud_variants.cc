@@ -40,9 +40,18 @@ std::vector<std::string> interpolations() {
   return numerics::words_of(key->choices);
 }
 
+// The rays where the surface `number` leaves them.
+trace::RayBatch rays_at(const scene::Scene& scene, const scene::Field& field, const scene::Wavelength& wavelength,
+                        std::span<const trace::PupilPoint> pupil, int number) {
+  trace::RayBatch rays = launch(scene, field, wavelength.index.front(), pupil);
+  for (int surface = 1; surface <= number; ++surface) trace_surface(scene, wavelength, surface, rays);
+  return rays;
+}
+
 }  // namespace
 
-ParsedVariant parse_variant(const std::string& text) {
+ParsedVariant parse_variant(std::string text) {
+  text.erase(0, std::min(text.find_first_not_of(' '), text.size()));  // "delaunay, zernike:36"
   const std::size_t colon = std::min(text.find(':'), text.size());
   const std::string kind = text.substr(0, colon), rest = text.substr(std::min(colon + 1, text.size()));
   if (kind == "delaunay") {
@@ -64,22 +73,37 @@ std::optional<double> footprint_radius(const prescription::Model& model, int num
   const auto pupil = trace::pupil_points({trace::PatternKind::hexapolar}, 2000);
   std::optional<double> radius;
   for (const scene::Beam& beam : {analysis::beam_of_job(), scene::Beam{}}) {
-    const auto compiled = load_scene(model, beam);
-    if (!compiled) return std::nullopt;
-    const scene::Scene& scene = *compiled->scene;
+    const scene::CompileResult compiled = scene::compile(model, beam);  // its notes are of a surface that is not compared
+    if (!compiled.scene) {
+      report(prescription::in_order(compiled.findings, model.documents));
+      return std::nullopt;
+    }
+    const scene::Scene& scene = *compiled.scene;
     radius.reset();
     bool leaves = false;
     for (const scene::Field& field : scene.fields)
       for (const scene::Wavelength& wavelength : scene.wavelengths) {
-        trace::RayBatch rays = launch(scene, field, wavelength.index.front(), pupil);
-        for (int surface = 1; surface <= number; ++surface) trace_surface(scene, wavelength, surface, rays);
-        leaves = leaves || leaves_a_part(compiled->parts, count_statuses(rays));
+        const trace::RayBatch rays = rays_at(scene, field, wavelength, pupil, number);
+        leaves = leaves || leaves_a_part(compiled.parts, count_statuses(rays));
         for (std::size_t i = 0; i < rays.size(); ++i)
           if (rays.ended[i] == 0) radius = std::max(radius.value_or(0), std::hypot(rays.x[i], rays.y[i]));
       }
     if (!leaves) break;
   }
   return radius;
+}
+
+double share_within(const scene::Scene& scene, const scene::Field& field, const scene::Wavelength& wavelength,
+                    std::span<const trace::PupilPoint> pupil, int number, double radius_mm) {
+  const trace::RayBatch rays = rays_at(scene, field, wavelength, pupil, number);
+  std::int64_t reaching = 0, within = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (rays.ended[i] != 0 && rays.ended_at(i) != number) continue;
+    ++reaching;
+    const bool meets = rays.ended[i] == 0 || rays.status(i) == surface::Status::clipped || rays.status(i) == surface::Status::total_reflection;
+    within += meets && std::hypot(rays.x[i], rays.y[i]) <= radius_mm;
+  }
+  return static_cast<double>(within) / static_cast<double>(reaching);
 }
 
 std::vector<ComparedModel> make_variants(const prescription::Model& system, const VariantRequest& request) {
@@ -98,9 +122,13 @@ std::vector<ComparedModel> make_variants(const prescription::Model& system, cons
     return {};
   }
   Findings findings;
-  const Shape points = prescription::make_shape(
+  Shape points = prescription::make_shape(
       "delaunay", {{"points", request.points}, {"format", request.format}, {"axes", request.axes}}, on_command_line, findings);
   if (!report(findings) || !points.cloud) return {};
+  auto& numbers = points.parameters.numbers;
+  if (surface->shape.kind == points.kind) numbers = surface->shape.parameters.numbers;
+  if (request.smoothing_um) numbers["smoothing_um"] = *request.smoothing_um;
+  if (request.max_edge_mm) numbers["max_edge_mm"] = *request.max_edge_mm;
 
   const std::size_t at = static_cast<std::size_t>(surface - system.surfaces.begin());
   std::optional<double> radius = request.radius_mm;
@@ -130,7 +158,7 @@ std::vector<ComparedModel> make_variants(const prescription::Model& system, cons
       }
       shape = zernike_shape(*fit.surface);
       shape.place = on_command_line;
-      variant.fit = output::FitQuality{kind.terms, *radius, fit.surface->rms_um};
+      variant.fit = output::FitQuality{kind.terms, *radius, fit.surface->rms_um, static_cast<int>(at) + 1};
     }
     variants.push_back(std::move(variant));
   }

@@ -39,7 +39,7 @@ struct CompareOptions : JobOptions {
   std::vector<std::string> systems;
   std::string surface, points, format = "xyz", axes = "local";  // variants of one surface, made from points
   std::vector<std::string> as;                                  // "delaunay", "delaunay:linear", "zernike:36"
-  std::optional<double> radius_mm;
+  std::optional<double> radius_mm, smoothing_um, max_edge_mm;
 };
 int compare_command(const CompareOptions& options);
 

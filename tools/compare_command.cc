@@ -56,13 +56,13 @@ std::vector<ComparedModel> load_models(const std::vector<std::string>& files) {
 
 // Wavelengths, fields, object and beam of the first; false, with a message, where a medium does not reach so far.
 bool take_rays_of(const Model& first, const scene::LaunchPupil& pupil, Model& model) {
+  model.object = first.object;
   std::vector<double> needed = first.wavelengths_nm;
   needed.push_back(first.primary_wavelength_nm());
   if (!set_wavelengths(model, needed, fmt::format("compare: {}, by the rays of {}", model.file, first.file))) return false;
   model.wavelengths_nm = first.wavelengths_nm;
   model.primary_nm = first.primary_nm;
   model.fields = first.fields;
-  model.object.distance_mm = first.object.distance_mm;
   model.aperture.kind = first.aperture.kind;
   model.aperture.value = first.aperture.value;
   if (!pupil.telecentric) {
@@ -96,6 +96,18 @@ CompiledSystems compile_all(std::vector<ComparedModel>& models, bool whole) {
   return result;
 }
 
+constexpr std::int64_t most_rays_of_a_share = 10000;  // a share of the beam to some 0.01 %
+
+// What share of the beam lies where the points told the fit what to do. Beyond the circle the surface is extrapolated.
+void add_coverage(const scene::Scene& scene, const output::FitQuality& fit, const analysis::JobRequest& request, std::vector<analysis::JobResult>& results) {
+  const auto pupil = trace::pupil_points(request.pattern, std::min(request.ray_count, most_rays_of_a_share));
+  for (analysis::JobResult& result : results) {
+    const double share = share_within(scene, scene.fields[result.field], scene.wavelengths[result.wavelength], pupil, fit.surface_number, fit.radius_mm);
+    const auto before = std::find_if(result.coverage.begin(), result.coverage.end(), [&](const auto& one) { return one.surface_number > fit.surface_number; });
+    result.coverage.insert(before, {fit.surface_number, share});
+  }
+}
+
 output::Comparison compare(const std::vector<ComparedModel>& models, CompiledSystems compiled) {
   output::Comparison comparison;
   std::vector<output::Report>& reports = compiled.reports;
@@ -113,9 +125,12 @@ output::Comparison compare(const std::vector<ComparedModel>& models, CompiledSys
 
 bool write_all(const fs::path& folder, const output::Comparison& comparison, const std::string& summary) {
   const std::vector<output::Figure> figures = sheets(comparison);
+  const auto sheet_of = [&](std::size_t field) { return folder / fmt::format("comparison.field{}.png", field); };
+  std::error_code none_there;
+  for (std::size_t field = figures.size(); fs::remove(sheet_of(field), none_there); ++field) {}  // of an earlier run
   bool all_written = write_image("compare", folder / "comparison", parts(comparison), figures.front());
   for (std::size_t field = 1; field < figures.size(); ++field)
-    all_written &= written("compare", output::write_png((folder / fmt::format("comparison.field{}.png", field)).string(), render(figures[field])));
+    all_written &= written("compare", output::write_png(sheet_of(field).string(), render(figures[field])));
   return written("compare", output::write_file((folder / "summary.json").string(), summary)) && all_written;
 }
 
@@ -153,7 +168,7 @@ int compare_command(const CompareOptions& options) {
   std::string title;
   if (!kinds.empty()) {
     title = fmt::format("{}, {} from {}", models.front().name, options.surface, fs::path(options.points).filename().string());
-    models = make_variants(models.front().model, {options.surface, options.points, options.format, options.axes, kinds, options.radius_mm});
+    models = make_variants(models.front().model, {options.surface, options.points, options.format, options.axes, kinds, options.radius_mm, options.smoothing_um, options.max_edge_mm});
     if (models.empty()) return 1;
   }
   make_names_unique(models);
@@ -170,6 +185,8 @@ int compare_command(const CompareOptions& options) {
     for (std::size_t i = 0; i < models.size(); ++i) compiled.reports[i].results = std::move(results[i]);
     if (std::none_of(compiled.reports.begin(), compiled.reports.end(), [](const output::Report& one) { return leaves_a_part(one); })) break;
   }
+  for (std::size_t i = 0; i < models.size(); ++i)
+    if (models[i].fit) add_coverage(compiled.scenes[i], *models[i].fit, *request, compiled.reports[i].results);
   output::Comparison comparison = compare(models, std::move(compiled));
   comparison.title = title;
 

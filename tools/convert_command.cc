@@ -10,6 +10,7 @@
 #include "lib/prescription/cloud_reader.h"
 #include "tools/commands.h"
 #include "tools/load.h"
+#include "tools/write.h"
 
 namespace sagitta::tools {
 
@@ -19,6 +20,7 @@ int convert_command(const ConvertOptions& options) {
     fmt::print(stderr, "sagitta convert: --axes osa: the format {} itself tells its axes\n", options.format);
     return 2;
   }
+  if (overwrites("convert", "-o " + options.file, options.points, {options.file})) return 2;
   prescription::Findings findings;
   const auto cloud = prescription::read_cloud({options.points, options.format, osa_axes}, findings);
   if (!report(findings) || !cloud) return 1;

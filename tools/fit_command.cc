@@ -27,6 +27,9 @@ int fit_command(const FitOptions& options) {
     fmt::print(stderr, "sagitta fit: -o {}: expected FILE.yaml; the residual map is written beside it\n", options.fragment);
     return 2;
   }
+  auto base = fragment;
+  base.replace_extension();
+  if (overwrites("fit", "-o " + options.fragment, options.points, {fragment, base.string() + ".exr", base.string() + ".png"})) return 2;
 
   prescription::Findings findings;
   const auto cloud = prescription::read_cloud({options.points, options.format, options.axes == "osa"}, findings);
@@ -48,10 +51,8 @@ int fit_command(const FitOptions& options) {
     return 0;
   }
   if (!make_folder("fit", fragment.parent_path())) return 1;
-  auto base = fragment;
-  base.replace_extension();
-  const bool all_written = written("fit", output::write_file(fragment.string(), fit_fragment(result)));
-  return write_image("fit", base, {residual_part(result)}, residual_figure(result)) && all_written ? 0 : 1;
+  // The fragment last: where it is there, all of it is.
+  return write_image("fit", base, {residual_part(result)}, residual_figure(result)) && written("fit", output::write_file(fragment.string(), fit_fragment(result))) ? 0 : 1;
 }
 
 }  // namespace sagitta::tools

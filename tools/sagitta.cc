@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The program: the command line in, one command out.
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -19,6 +21,16 @@ using namespace sagitta::tools;
 
 constexpr const char* usage_status = R"(Exit status: 0 done; 1 the input is wrong, or not one ray arrived; 2 wrong usage.
 Results go to standard output or the output folder, messages to standard error.)";
+
+// As CLI::Range, but nan is out of it.
+CLI::Validator from_to(double low, double high) {
+  const auto fault = [low, high](const std::string& text) {
+    double value = 0;
+    const bool inside = CLI::detail::lexical_cast(text, value) && value >= low && value <= high;
+    return inside ? std::string() : fmt::format("{} is not a number from {:g} to {:g}", text, low, high);
+  };
+  return {fault, fmt::format("FLOAT in [{:g} - {:g}]", low, high)};
+}
 
 CLI::IsMember one_of(std::string_view choices) { return CLI::IsMember(sagitta::numerics::words_of(choices)); }
 
@@ -57,9 +69,13 @@ void add_compare(CLI::App& app, int& status) {
   auto* axes = command->add_option("--axes", options.axes, "osa: x of the points is to the examiner's right")
       ->check(one_of("local|osa"))->capture_default_str();
   auto* radius = command->add_option("--radius-mm", options.radius_mm, "circle of the Zernike fits (default: what the beam needs)")
-      ->check(CLI::Range(1e-6, 1e6));
+      ->check(from_to(1e-6, 1e6));
+  auto* smoothing = command->add_option("--smoothing-um", options.smoothing_um, "rms by which smoothed heights may leave the points (default: that of the surface's own points, or 0)")
+      ->check(from_to(0, 1e9));
+  auto* edge = command->add_option("--max-edge-mm", options.max_edge_mm, "facets with a longer edge are holes (default: that of the surface's own points, or none)")
+      ->check(from_to(1e-9, 1e9));
   surface->needs(with)->needs(as);
-  for (CLI::Option* option : {with, as, format, axes, radius}) option->needs(surface);
+  for (CLI::Option* option : {with, as, format, axes, radius, smoothing, edge}) option->needs(surface);
   add_job(*command, options);
   command->callback([&status] { status = compare_command(options); });
 }
@@ -74,7 +90,7 @@ void add_rays(CLI::App& app, int& status) {
       "CSV file of given rays: x_mm,y_mm,z_mm,l,m,n[,wavelength_nm], global frame, direction cosines");
   auto* field = command->add_option("--field", options.field, "number of the field, from 0 (default: all)");
   command->add_option("--wavelength", options.wavelength_nm, "wavelength in nm (default: all of the system; with --from, the primary one)")
-      ->check(CLI::Range(1e-3, 1e12));
+      ->check(from_to(1e-3, 1e12));
   pupil->excludes(from);
   fan->excludes(from)->excludes(pupil);
   field->excludes(from);
@@ -105,7 +121,7 @@ void add_fit(CLI::App& app, int& status) {
   command->add_option("POINTS", options.points, "file of the points")->required();
   command->add_option("--terms", options.terms, "Zernike terms, from the indexing's first")->check(CLI::Range(1, sagitta::scene::most_zernike_terms({})))->capture_default_str();
   command->add_option("--radius-mm", options.radius_mm, "normalisation radius; points within it are fitted")
-      ->check(CLI::Range(1e-6, 1e9))->capture_default_str();
+      ->check(from_to(1e-6, 1e9))->capture_default_str();
   command->add_option("--indexing", options.indexing, "osa, noll or fringe")
       ->check(one_of(sagitta::numerics::zernike_indexings))->capture_default_str();
   command->add_option("--format", options.format, "format of the points")

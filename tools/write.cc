@@ -16,6 +16,16 @@ bool make_folder(const char* command, const std::filesystem::path& folder) {
   return false;
 }
 
+bool overwrites(const char* command, const std::string& option, const std::filesystem::path& input, const std::vector<std::filesystem::path>& outputs) {
+  for (const std::filesystem::path& output : outputs) {
+    std::error_code fault;  // of names that are not there: nothing is overwritten
+    if (!std::filesystem::equivalent(input, output, fault)) continue;
+    fmt::print(stderr, "sagitta {}: {}: {} is the file of the points, which would be overwritten\n  hint: give another name\n", command, option, output.string());
+    return true;
+  }
+  return false;
+}
+
 bool written(const char* command, const output::WriteResult& result) {
   if (!result.ok()) fmt::print(stderr, "sagitta {}: {}\n", command, result.error);
   return result.ok();

@@ -12,6 +12,33 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
+// (3), by Gram-Schmidt over the samples: of what is left of `values` each of 1, x, y is taken out, itself first made free of
+// those before. One that the samples do not tell from those before is left out.
+std::vector<double> without_tilt(std::vector<double> values, int size) {
+  const auto n = static_cast<std::size_t>(size);
+  const auto product = [&](const std::vector<double>& a, const std::vector<double>& b) {
+    numerics::Sum sum;
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (std::isfinite(values[i])) sum.add(a[i] * b[i]);
+    return sum.value();
+  };
+  std::vector<std::vector<double>> taken;
+  const auto take_out = [&](std::vector<double>& from, const std::vector<double>& one) {
+    const double share = product(from, one) / product(one, one);
+    for (std::size_t i = 0; i < from.size(); ++i) from[i] -= share * one[i];
+  };
+  for (int power = 0; power < 3; ++power) {
+    std::vector<double> one(values.size(), 1);
+    for (std::size_t i = 0; i < one.size() && power > 0; ++i) one[i] = static_cast<double>(power == 1 ? i % n : i / n) - (size - 1) / 2.0;
+    const double before = product(one, one);
+    for (const auto& other : taken) take_out(one, other);
+    if (!(product(one, one) > 1e-20 * before)) continue;
+    take_out(values, one);
+    taken.push_back(std::move(one));
+  }
+  return values;
+}
+
 }  // namespace
 
 WavefrontDifference wavefront_difference(const Wavefront& other, const Wavefront& first) {
@@ -42,6 +69,11 @@ WavefrontDifference wavefront_difference(const Wavefront& other, const Wavefront
   for (const double difference : result.opd_waves)
     if (std::isfinite(difference)) squares.add((difference - mean) * (difference - mean));
   result.rms_waves = result.in_both > 0 ? std::sqrt(squares.value() / count) : nan;
+  result.without_tilt_waves = without_tilt(result.opd_waves, result.size);
+  numerics::Sum squares_left;
+  for (const double left : result.without_tilt_waves)
+    if (std::isfinite(left)) squares_left.add(left * left);
+  result.rms_without_tilt_waves = result.in_both > 0 ? std::sqrt(squares_left.value() / count) : nan;
   result.peak_to_valley_waves = result.in_both > 0 ? high - low : nan;
   if (first.zernike && other.zernike)
     for (std::size_t j = 0; j < std::min(first.zernike->coefficients.size(), other.zernike->coefficients.size()); ++j)

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -30,12 +31,13 @@ struct Range {
   bool open = false;       // the ends low and high are themselves illegal
   bool zero = true;        // zero is legal
   bool infinite = false;   // +-infinity is legal (where low and high allow it)
+  bool whole = false;      // only whole numbers are legal
 
-  constexpr bool contains(double v) const {
+  bool contains(double v) const {
     const bool inside = open ? (v > low && v < high) : (v >= low && v <= high);
     const bool is_infinite = v == std::numeric_limits<double>::infinity() || v == -std::numeric_limits<double>::infinity();
     if (is_infinite) return infinite && v >= low && v <= high;
-    return inside && (zero || v != 0);
+    return inside && (zero || v != 0) && (!whole || v == std::trunc(v));
   }
 };
 inline constexpr Range any_number{};
@@ -59,6 +61,8 @@ struct Key {
   // Of an `indexed` value whose indices depend on a choice: the key of the choice, earlier in the table, and the rule.
   std::string_view indexed_by = {};
   IndexRange (*indices)(std::string_view choice) = nullptr;  // none: IndexRange{}
+  // Of a key that only some choices have a use for: the key of the choice, earlier in the table, and those choices.
+  std::string_view only_with = {}, only_choices = {};
 };
 
 // The words of `choices`, "osa|noll|fringe".

@@ -21,6 +21,7 @@ struct FitQuality {
   int terms = 0;
   double radius_mm = 0;        // of the circle whose points were used
   double residual_rms_um = 0;
+  int surface_number = 0;      // the surface; its coverage is the share of the rays reaching it that meet it within the circle
 };
 
 struct ComparedSystem {

@@ -28,6 +28,7 @@ ExrPart difference_part(const Comparison& comparison, const ComparedSystem& syst
   for (ExrAttribute& attribute : pupil_map_attributes(system.report, difference.size)) part.attributes.push_back(std::move(attribute));
   part.attributes.push_back({"mean_waves", difference.mean_waves});
   part.attributes.push_back({"rms_waves", difference.rms_waves});
+  part.attributes.push_back({"rms_without_tilt_waves", difference.rms_without_tilt_waves});
   part.attributes.push_back({"peak_to_valley_waves", difference.peak_to_valley_waves});
   return part;
 }
@@ -67,15 +68,14 @@ Panel difference_panel(const Comparison& comparison, const ComparedSystem& syste
     panel.title = "difference";
     return panel;
   }
-  auto difference = system.differences[i].wavefront;
-  if (difference)
-    for (double& opd : difference->opd_waves) opd -= difference->mean_waves;
-  Panel panel = difference ? pupil_panel(system.report, difference->size, difference->opd_waves, "no sample in both")
+  const auto& difference = system.differences[i].wavefront;
+  Panel panel = difference ? pupil_panel(system.report, difference->size, difference->without_tilt_waves, "no sample in both")
                            : pupil_panel(system.report, 0, {}, "one of the two has no wavefront");
   panel.title = fmt::format("{} − {}", system.report.system, first);
-  panel.quantity = "OPD difference − mean";
+  panel.quantity = "OPD difference − tilt";
   if (difference) {
-    panel.subtitle = {fmt::format("RMS {:.4g}, P-V {:.4g} waves", difference->rms_waves, difference->peak_to_valley_waves)};
+    panel.subtitle = {fmt::format("RMS without piston and tilt {:.4g} waves", difference->rms_without_tilt_waves),
+                      fmt::format("with tilt: RMS {:.4g}, P-V {:.4g} waves", difference->rms_waves, difference->peak_to_valley_waves)};
     if (const auto lost = difference->only_in_first + difference->only_in_other; lost > 0)
       panel.subtitle.push_back(fmt::format("{} samples in both, {} in one only", difference->in_both, lost));
   }
@@ -88,7 +88,7 @@ Figure sheet(const Comparison& comparison, std::size_t field) {
   Figure figure{fmt::format("{}: {}", comparison.title, panel_title(first, first.results[i])),
                 fmt::format("A row for each system, by the rays of the first. Spots at one scale, circle: RMS radius about the centroid. "
                             "OPD = OPL(chief) − OPL(ray), each to its own reference sphere; one colour scale for the wavefronts, "
-                            "one for the differences, which are about their means. sagitta {}", first.version),
+                            "one for the differences, drawn without piston and tilt. sagitta {}", first.version),
                 {}, 3};
   double largest_rms = 0;
   for (const ComparedSystem& system : comparison.systems)

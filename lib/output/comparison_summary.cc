@@ -27,6 +27,7 @@ ordered_json difference_json(const Report& report, std::size_t i, const analysis
   if (const auto& wavefront = difference.wavefront) {
     json["wavefront"] = {{"mean_waves", wavefront->mean_waves},
                          {"rms_waves", wavefront->rms_waves},
+                         {"rms_without_tilt_waves", wavefront->rms_without_tilt_waves},
                          {"peak_to_valley_waves", wavefront->peak_to_valley_waves},
                          {"samples", wavefront->in_both},
                          {"samples_only_in_first", wavefront->only_in_first},
@@ -49,7 +50,8 @@ Table main_table(const Comparison& comparison) {
   Table table{{{"field", ""}, {"x", field_unit}, {"y", field_unit}, {"wavelength", "nm"}, {"system", "", true}, {"ok", ""}, {"lost", ""}}, {}};
   if (covers) table.columns.push_back({"coverage", "%"});
   for (const Column& column : std::initializer_list<Column>{{"RMS radius", "um"}, {"change", "um"}, {"change", "%"}, {"OPD RMS", "waves"},
-                                                            {"OPD P-V", "waves"}, {"change RMS", "waves"}, {"change P-V", "waves"}})
+                                                            {"OPD P-V", "waves"}, {"change RMS", "waves"},
+                                                            {"without tilt", "waves"}, {"change P-V", "waves"}})
     table.columns.push_back(column);
   if (fits) table.columns.push_back({"fit RMS", "um"});
   for (std::size_t i = 0; i < first.results.size(); ++i)
@@ -70,6 +72,7 @@ Table main_table(const Comparison& comparison) {
       row.push_back(wavefront ? significant(wavefront->rms_waves) : "-");
       row.push_back(wavefront ? significant(wavefront->peak_to_valley_waves) : "-");
       row.push_back(is_first ? "" : difference.wavefront ? significant(difference.wavefront->rms_waves) : "-");
+      row.push_back(is_first ? "" : difference.wavefront ? significant(difference.wavefront->rms_without_tilt_waves) : "-");
       row.push_back(is_first ? "" : difference.wavefront ? significant(difference.wavefront->peak_to_valley_waves) : "-");
       if (system.fit) row.push_back(significant(system.fit->residual_rms_um));
       table.rows.push_back(std::move(row));
@@ -107,6 +110,21 @@ Table zernike_table(const Comparison& comparison, std::size_t i) {
   return table;
 }
 
+// Where the numbers of a system are to be read with care beside those of the first.
+std::vector<std::string> cautions(const Comparison& comparison, const ComparedSystem& system, std::size_t i) {
+  std::vector<std::string> lines;
+  const ComparedSystem& first = comparison.systems.front();
+  const analysis::JobResult &result = system.report.results[i], &of_first = first.report.results[i];
+  const std::string at = fmt::format("field {} at {:g} nm", result.field, system.report.wavelengths_nm[result.wavelength]);
+  for (const analysis::Coverage& coverage : result.coverage)
+    if (system.fit && coverage.surface_number == system.fit->surface_number && coverage.share < 1)
+      lines.push_back(fmt::format("{}: {:.3g} % of the rays meet the surface beyond the circle of its fit, where it is extrapolated", at, 100 * (1 - coverage.share)));
+  if (result.rays.endings != of_first.rays.endings)
+    lines.push_back(fmt::format("{}: its spot is of {} rays, that of {} of {}: not of the same rays", at, result.rays[Status::ok],
+                                printable(first.report.system, 80), of_first.rays[Status::ok]));
+  return lines;
+}
+
 }  // namespace
 
 std::string summary_json(const Comparison& comparison) {
@@ -120,7 +138,7 @@ std::string summary_json(const Comparison& comparison) {
     ordered_json one = report_json(system.report);
     one["slug"] = system.slug;
     if (system.fit)
-      one["fit"] = {{"terms", system.fit->terms}, {"radius_mm", system.fit->radius_mm}, {"residual_rms_um", system.fit->residual_rms_um}};
+      one["fit"] = {{"terms", system.fit->terms}, {"surface", system.fit->surface_number}, {"radius_mm", system.fit->radius_mm}, {"residual_rms_um", system.fit->residual_rms_um}};
     json["systems"].push_back(std::move(one));
     if (&system == &first) continue;
     ordered_json of{{"system", system.report.system}, {"from", first.report.system}, {"results", ordered_json::array()}};
@@ -152,6 +170,8 @@ std::string summary_text(const Comparison& comparison) {
     if (const std::string note = facets_note(system.report); !note.empty()) below += fmt::format("{}: {}\n", name, note);
     for (const auto& result : system.report.results)
       for (const std::string& line : remarks(system.report, result)) below += fmt::format("{}: {}\n", name, line);
+    for (std::size_t i = 0; i < system.report.results.size(); ++i)
+      for (const std::string& line : cautions(comparison, system, i)) below += fmt::format("{}: {}\n", name, line);
   }
   return text + (below.empty() ? "" : "\n") + below;
 }

@@ -56,9 +56,10 @@ std::string fit_text(const FitReport& report) {
     const numerics::ZernikeTerm term = numerics::zernike_term(fit.indexing, index);
     terms.rows.push_back({std::to_string(index++), std::to_string(term.n), std::to_string(term.m), six_places(um)});
   }
-  return fmt::format("{}: {} points within {:g} mm, {:.1f} % of the circle inside them\nin {}\n\n{}\n"
+  return fmt::format("{}: {} points within {:g} mm, {:.1f} % of the circle inside them\nin {}\n\n{}{}\n"
                      "peak to valley {} um, condition number {:.4g}, normalisation radius {:g} mm\n\n{}",
                      printable(report.file, 200), fit.point_count, fit.normalization_radius_mm, 100 * report.map.coverage, frame, to_text(fits),
+                     fit.conic_is_sphere ? "the points tell no conic constant from -100 to 100: the conic is the sphere\n" : "",
                      micrometres(fit.peak_to_valley_um), fit.condition_number, fit.normalization_radius_mm, to_text(terms));
 }
 
@@ -72,7 +73,8 @@ std::string fit_json(const FitReport& report) {
       {"coverage", report.map.coverage},
       {"condition_number", fit.condition_number},
       {"sphere", {{"radius_mm", fit.sphere_radius_mm}, {"vertex_z_mm", fit.sphere_vertex_mm}, {"rms_um", fit.sphere_rms_um}}},
-      {"conic", {{"radius_mm", fit.radius_mm}, {"conic_constant", fit.conic_constant}, {"vertex_z_mm", fit.vertex_mm}, {"rms_um", fit.conic_rms_um}}},
+      {"conic", {{"radius_mm", fit.radius_mm}, {"conic_constant", fit.conic_constant}, {"is_sphere", fit.conic_is_sphere},
+                 {"vertex_z_mm", fit.vertex_mm}, {"rms_um", fit.conic_rms_um}}},
       {"zernike", {{"radius_mm", fit.radius_mm}, {"conic_constant", fit.conic_constant}, {"normalization_radius_mm", fit.normalization_radius_mm},
                    {"indexing", indexing_name(fit.indexing)}, {"coefficients_um", fit.coefficients_um}, {"rms_um", fit.rms_um},
                    {"peak_to_valley_um", fit.peak_to_valley_um}}}};
@@ -102,10 +104,10 @@ std::string fit_shape(const FitReport& report) {
 
 std::string fit_fragment(const FitReport& report) {
   const ZernikeSurface& fit = report.surface;
-  return fmt::format("# A surface's shape: the best-fit conic of {} with {}, by sagitta {} (sagitta fit).\n"
+  return fmt::format("# A surface's shape: the best-fit {} of {} with {}, by sagitta {} (sagitta fit).\n"
                      "# {} points within {:g} mm; they differ from it by {:.4g} um RMS, {:.4g} um peak to valley; condition number {:.4g};\n"
                      "# {:.1f} % of the circle inside them. In {}.\n{}",
-                     printable(report.file, 200), terms_of(fit), report.version, fit.point_count, fit.normalization_radius_mm, fit.rms_um,
+                     fit.conic_is_sphere ? "sphere" : "conic", printable(report.file, 200), terms_of(fit), report.version, fit.point_count, fit.normalization_radius_mm, fit.rms_um,
                      fit.peak_to_valley_um, fit.condition_number, 100 * report.map.coverage, frame, fit_shape(report));
 }
 

@@ -127,6 +127,10 @@ YamlNode::Pointer merged(const YamlNode& base, const YamlNode& changes, Findings
 
 // The base's file; "" with an error where there is none to go on with.
 std::string find_base(const YamlNode& extends, const std::vector<Document>& documents, Findings& findings) {
+  if (extends.kind != YamlNode::Kind::scalar || extends.text.empty()) {
+    refuse(extends, "extends", "the name of a file", findings);
+    return {};
+  }
   const auto name = read_text(extends, "extends", {}, findings);
   const auto file = name ? find_named_file(*name, extends.place, findings) : std::nullopt;
   if (!file) return {};

@@ -74,6 +74,7 @@ class HeaderReader {
       return refuse(fmt::format("{} is no element with a count", quoted(lines_.line())), "element vertex 1000");
     close_element();
     element_count_ = count;
+    header_.has_elements_after = part_ == Part::after;
     if (words_[1] != "vertex") return;
     if (part_ != Part::before) return refuse("a second element vertex");
     part_ = Part::vertex;

@@ -21,6 +21,7 @@ struct PlyHeader {
   std::endian order = std::endian::native;
   std::uint64_t lines_before = 0, bytes_before = 0;  // of the elements between the header and the vertices
   std::uint64_t vertex_count = 0;
+  bool has_elements_after = false;                   // behind the vertices; their parts may have any length
   std::vector<PlyType> properties;                   // of a vertex, in the order of the file
   std::array<std::size_t, 3> coordinate{};           // which of them are x, y, z: float32 or float64
 

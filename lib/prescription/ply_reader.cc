@@ -2,7 +2,7 @@
 // Format ply: the vertices of a PLY file, x, y, z in mm in the surface's local frame, as text or binary. The compact form
 // of large clouds (output/ply.h writes it): three doubles a vertex and nothing else is read at the speed of the disk.
 //
-// Other properties of the vertices, and other elements, are passed over. z NaN: a hole at (x, y); x or y NaN: no place,
+// Other properties of the vertices, elements behind them, and elements without lists before them are passed over. z NaN: a hole at (x, y); x or y NaN: no place,
 // the vertex is left out and counted in a note. The size of the file is checked before memory is taken for what the
 // header announces.
 #include <fmt/format.h>
@@ -94,6 +94,9 @@ class PlyReader {
     const std::uint64_t begin = lines_.offset() + header_.bytes_before, vertex_size = header_.vertex_size();
     const std::uint64_t held = file_size > begin ? (file_size - begin) / vertex_size : 0;
     if (held < header_.vertex_count) return tell_the_end(held);
+    if (const std::uint64_t rest = file_size - begin - header_.vertex_count * vertex_size; rest > 0 && !header_.has_elements_after)
+      return errors_.add(errors_.at(0), fmt::format("the file goes on for {} bytes behind the last vertex, and the header has no element there", rest),
+                         "its header is wrong: the count of the vertices, or their properties");
     const std::unique_ptr<std::FILE, CloseFile> file(std::fopen(request_.file.c_str(), "rb"));
     if (!file || ::fseeko(file.get(), static_cast<off_t>(begin), SEEK_SET) != 0)
       return errors_.add(errors_.at(0), "cannot be read: " + std::generic_category().message(errno));

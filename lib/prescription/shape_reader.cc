@@ -22,10 +22,22 @@ numerics::IndexRange index_range(const Key& key, const Parameters& parameters) {
   return choice == parameters.texts.end() ? numerics::IndexRange{} : key.indices(choice->second);
 }
 
+// A key that the choice has no use for would be read by nobody.
+void check_use(const Section& section, const Key& key, const Parameters& parameters) {
+  const YamlNode* node = section.find(key.name);
+  const auto choice = parameters.texts.find(key.only_with);
+  if (!node || key.only_with.empty() || choice == parameters.texts.end()) return;
+  const std::vector<std::string> legal = numerics::words_of(key.only_choices);
+  if (std::find(legal.begin(), legal.end(), choice->second) != legal.end()) return;
+  section.findings().error(node->place, fmt::format("{} has no use with {}: {}", key.name, key.only_with, choice->second),
+                           fmt::format("leave it out; it is for {}", fmt::join(legal, ", ")));
+}
+
 void read_value(const Section& section, const Key& key, Parameters& parameters) {
   const std::string name(key.name);
   const YamlNode* node = section.find(key.name);
   if (node) parameters.places[name] = node->place;
+  check_use(section, key, parameters);
   switch (key.kind) {
     case ValueKind::number:
       parameters.numbers[name] = section.number(key.name).value_or(key.fallback);

@@ -19,7 +19,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 std::string in_words(const numerics::Range& range) {
   const bool from_below = range.low > std::numeric_limits<double>::lowest(), to_above = range.high < infinity;
   if (range.low == range.high) return fmt::format("{}", range.low);
-  std::string words = "a number";
+  std::string words = range.whole ? "a whole number" : "a number";
   if (from_below && to_above) {
     words += range.open ? " between " : " from ";
     words += fmt::format("{} {} {}", range.low, range.open ? "and" : "to", range.high);
@@ -46,6 +46,7 @@ std::string shown(const YamlNode& node) {
     case YamlNode::Kind::scalar:
       break;
   }
+  if (node.text.empty()) return "an empty text";
   return fmt::format("{}'{}'", node.quoted ? "the text " : "", excerpt(node.text));
 }
 

@@ -113,7 +113,7 @@ std::optional<BestFits> fit_sphere_and_conic(Points points) {
   BestFits result{*sphere, *sphere};
   const double c = sphere->conic.curvature;
   const auto conic = minimise<ConicInQ>(points, Eigen::Vector3d(sphere->vertex_z, c, c * c), u_max);
-  if (conic && std::abs(conic->conic.conic_constant) <= 100) result.conic = *conic;
+  if (conic && std::abs(conic->conic.conic_constant) <= 100) result = {*sphere, *conic, false};
   return result;
 }
 

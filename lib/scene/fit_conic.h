@@ -33,6 +33,7 @@ struct FittedConic {
 
 struct BestFits {
   FittedConic sphere, conic;
+  bool conic_is_sphere = true;  // the points do not tell a conic constant
 };
 
 // None where the points do not tell a curvature: fewer than 2, all at one distance from the axis, or not finite.

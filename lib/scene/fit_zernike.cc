@@ -168,6 +168,7 @@ ZernikeSurfaceResult fit_zernike_surface(const prescription::PointCloud& cloud, 
   result.sphere_rms_um = 1e3 * base->sphere.rms;
   result.radius_mm = 1 / base->conic.conic.curvature;
   result.conic_constant = base->conic.conic.conic_constant;
+  result.conic_is_sphere = base->conic_is_sphere;
   result.vertex_mm = base->conic.vertex_z;
   result.conic_rms_um = 1e3 * base->conic.rms;
 

@@ -48,6 +48,7 @@ int most_zernike_terms(numerics::ZernikeIndexing indexing);
 struct ZernikeSurface {
   double sphere_radius_mm = 0, sphere_vertex_mm = 0, sphere_rms_um = 0;  // best-fit sphere; a plane's radius is infinite
   double radius_mm = 0, conic_constant = 0;                              // of (1)
+  bool conic_is_sphere = false;                                          // the points tell no conic constant from -100 to 100
   double vertex_mm = 0, conic_rms_um = 0;                                // of the conic alone, its vertex free along z
   double normalization_radius_mm = 0;
   numerics::ZernikeIndexing indexing = numerics::ZernikeIndexing::osa;

@@ -28,10 +28,10 @@ struct Facets {
       numerics::Key{.name = "format", .kind = numerics::ValueKind::text, .meaning = "format of the file", .choices = "xyz|cso|polar|ply"},
       numerics::Key{.name = "interpolation", .kind = numerics::ValueKind::text, .meaning = "surface between the points", .choices = "c1|linear|cubic|thin_plate|multiquadric"},
       numerics::Key{.name = "axes", .kind = numerics::ValueKind::text, .meaning = "frame of xyz and ply points: the surface's own, or OSA's (x to the examiner's right)", .choices = "local|osa"},
-      numerics::Key{.name = "rings", .meaning = "rings of nodes around a facet, of the radial basis functions", .range = {0, 5},
-                    .fallback = 2},
+      numerics::Key{.name = "rings", .meaning = "rings of nodes around a facet, of the radial basis functions", .range = {.low = 0, .high = 5, .whole = true},
+                    .fallback = 2, .only_with = "interpolation", .only_choices = "cubic|thin_plate|multiquadric"},
       numerics::Key{.name = "shape_mm", .meaning = "shape parameter of the multiquadric (0: the mean edge length)",
-                    .range = numerics::not_negative},
+                    .range = numerics::not_negative, .only_with = "interpolation", .only_choices = "multiquadric"},
       numerics::Key{.name = "smoothing_um", .meaning = "rms by which smoothed heights may leave the points", .range = numerics::not_negative},
       numerics::Key{.name = "max_edge_mm", .kind = numerics::ValueKind::number, .meaning = "facets with a longer edge are holes",
                     .range = {0, std::numeric_limits<double>::infinity(), true, true, true}, .fallback = std::numeric_limits<double>::infinity()}};

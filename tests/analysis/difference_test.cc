@@ -40,11 +40,47 @@ TEST(Difference, is_over_the_samples_that_both_have) {
   EXPECT_EQ(d.zernike_um, (std::vector<double>{0, 2, -0.5}));
 }
 
+// Two samples: a tilt takes all. Elsewhere a tilted plane with x^2 - y^2, which has neither piston nor tilt on the disc's grid.
+TEST(Difference, without_tilt_is_what_no_plane_takes) {
+  const Wavefront zero = wavefront_of({nan, 0, nan, 0, nan, 0, nan, nan, nan}), two = wavefront_of({nan, 3, nan, 7, nan, nan, nan, nan, nan});
+  EXPECT_NEAR(wavefront_difference(two, zero).rms_without_tilt_waves, 0, 1e-15);
+  EXPECT_EQ(wavefront_difference(two, zero).rms_waves, 2);
+  constexpr int size = 16;
+  Wavefront first, other;
+  first.size = other.size = size;
+  double squares = 0;
+  int count = 0;
+  for (int row = 0; row < size; ++row)
+    for (int column = 0; column < size; ++column) {
+      const double x = (column - 7.5) / 8, y = (7.5 - row) / 8;
+      const bool inside = x * x + y * y <= 1;
+      first.mask.push_back(inside ? 0 : outside);
+      first.opd_waves.push_back(inside ? std::sin(5 * x + y) : nan);
+      other.opd_waves.push_back(first.opd_waves.back() + 0.25 + 10 * x - 4 * y + 0.1 * (x * x - y * y));
+      if (inside) squares += 0.01 * (x * x - y * y) * (x * x - y * y), ++count;
+    }
+  other.mask = first.mask;
+  const WavefrontDifference d = wavefront_difference(other, first);
+  EXPECT_GT(d.rms_waves, 5);
+  // Roundings of OPDs up to 11, some ten of them: 10 * 11 * 2^-53.
+  EXPECT_NEAR(d.rms_without_tilt_waves, std::sqrt(squares / count), 2e-14);
+  EXPECT_NEAR(d.without_tilt_waves[8], 0.1 * (0.0625 * 0.0625 - 0.9375 * 0.9375), 2e-14);
+  EXPECT_TRUE(std::isnan(d.without_tilt_waves[0]));
+  // over a part where 1, x and y are far from orthogonal, a plane still goes as a whole
+  for (std::size_t i = 0; i < other.opd_waves.size(); ++i) {
+    const double x = (static_cast<double>(i % size) - 7.5) / 8, y = (7.5 - static_cast<double>(i / size)) / 8;
+    other.opd_waves[i] = x + 0.5 * y < -0.1 ? first.opd_waves[i] + 0.25 + 10 * x - 4 * y : nan;
+  }
+  EXPECT_GT(wavefront_difference(other, first).rms_waves, 1);
+  EXPECT_NEAR(wavefront_difference(other, first).rms_without_tilt_waves, 0, 2e-14);
+}
+
 TEST(Difference, does_not_exist_where_no_sample_is_in_both) {
   const WavefrontDifference d = wavefront_difference(wavefront_of({nan, 4, nan, nan, nan, nan, nan, nan, nan}),
                                                      wavefront_of({nan, nan, nan, 1, nan, nan, nan, nan, nan}));
   EXPECT_EQ(d.in_both, 0);
   EXPECT_TRUE(std::isnan(d.rms_waves));
+  EXPECT_TRUE(std::isnan(d.rms_without_tilt_waves));
   EXPECT_TRUE(std::isnan(d.peak_to_valley_waves));
   EXPECT_TRUE(d.zernike_um.empty());
 }

@@ -17,6 +17,13 @@ TEST(CheckCommand, says_what_a_good_system_is) {
   EXPECT_THAT(run.out, HasSubstr("16.4679 mm at 543 nm"));
 }
 
+TEST(CheckCommand, counts_one_of_a_kind_as_one) {
+  const Folder folder;
+  const Outcome run = run_program("check " + folder.file("one.yaml", "sagitta: 1\nwavelengths_nm: [550]\naperture: {entrance_pupil_diameter_mm: 4}\nsurfaces:\n"
+                                                                     "  - {stop: true, conic: {radius_mm: 5}, thickness_mm: 1, medium: {index: 1.3}}\n  - {}\n"));
+  EXPECT_THAT(run.out, HasSubstr(": 2 surfaces, 1 field, 1 wavelength, effective"));
+}
+
 TEST(CheckCommand, reports_what_reading_and_compiling_find_and_writes_nothing) {
   const Folder folder;
   const std::string bad = folder.file("bad.yaml", "sagitta: 1\nwavelengths_nm: [550]\naperture: {entrance_pupil_diameter_mm: 4}\nsurfaces:\n  - {stop: true, conic: {radius_mm: 5 mm}, thicknes_mm: 1}\n  - {}\n");

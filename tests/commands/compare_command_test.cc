@@ -9,6 +9,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/compared.h"
 #include "tests/support/exr_file.h"
 #include "tests/support/program.h"
 
@@ -18,27 +19,10 @@ namespace {
 using nlohmann::json;
 using ::testing::HasSubstr;
 
-const std::string systems = SAGITTA_SOURCE_DIR "/systems/";
-
 std::string lens(const std::string& name, const std::string& top = {}, const std::string& back = {}) {
   return "sagitta: 1\nname: " + name + "\n" + (top.empty() ? "wavelengths_nm: [550, 633]\naperture: {entrance_pupil_diameter_mm: 8}\nfields: {angles_deg: [[0, 0], [1, 3]]}\n" : top) +
          "surfaces:\n  - {name: front, stop: true, conic: {radius_mm: 50}, thickness_mm: 4, medium: N-BK7}\n"
          "  - {name: back, conic: {radius_mm: -50}, thickness_mm: 48" + back + "}\n  - {name: image}\n";
-}
-
-json compared(const std::string& arguments, int expected_status = 0) {
-  const Folder folder;
-  const Outcome run = run_program("compare " + arguments + " -o " + folder.path("out") + " --json");
-  EXPECT_EQ(run.status, expected_status) << run.err;
-  EXPECT_EQ(run.out, read_text(folder.path("out/summary.json")));
-  return json::parse(run.out);
-}
-
-json traced(const std::string& system, const std::string& options = {}) {
-  const Folder folder;
-  const Outcome run = run_program("trace " + system + " -o " + folder.path("out") + " --json " + options);
-  EXPECT_EQ(run.status, 0) << run.err;
-  return json::parse(run.out);
 }
 
 TEST(CompareCommand, a_system_differs_from_itself_by_nothing) {
@@ -55,6 +39,7 @@ TEST(CompareCommand, a_system_differs_from_itself_by_nothing) {
     EXPECT_EQ(result["spot"]["centroid_shift_mm"], json({0, 0}));
     const json& wavefront = result["wavefront"];
     EXPECT_EQ(wavefront["rms_waves"], 0);
+    EXPECT_EQ(wavefront["rms_without_tilt_waves"], 0);
     EXPECT_EQ(wavefront["peak_to_valley_waves"], 0);
     EXPECT_EQ(wavefront["samples"], 3001);
     EXPECT_EQ(wavefront["samples_only_in_first"], 0);
@@ -118,6 +103,16 @@ TEST(CompareCommand, the_rays_are_those_of_the_first_system) {
   EXPECT_NE(traced(c, "--rays 400")["results"][2]["spot"], summary["systems"][2]["results"][2]["spot"]);  // alone its beam differs
 }
 
+TEST(CompareCommand, the_medium_before_every_system_is_that_of_the_first) {
+  const Folder folder;
+  const std::string eye = systems + "navarro-eye.yaml", in_water = folder.file("water.yaml", "extends: " + eye + "\nname: In water\nobject: {medium: {index: 1.33}}\n");
+  for (const std::string& both : {eye + " " + in_water, in_water + " " + eye}) {
+    const json summary = compared(both + " --rays 300");
+    EXPECT_EQ(summary["systems"][0]["results"], summary["systems"][1]["results"]) << both;
+    EXPECT_EQ(summary["systems"][0]["first_order"], summary["systems"][1]["first_order"]) << both;
+  }
+}
+
 TEST(CompareCommand, a_finite_object_of_the_first_is_before_every_system) {
   const Folder folder;
   const std::string top = "wavelengths_nm: [550]\naperture: {object_na: 0.02}\nfields: {object_heights_mm: [[0, 0], [2, 3]]}\nobject: {distance_mm: 100}\n";
@@ -169,6 +164,7 @@ TEST(CompareCommand, the_parts_hold_every_system_and_every_difference) {
       EXPECT_EQ(difference.text("units.Y"), "waves");
       EXPECT_THAT(difference.text("sign"), HasSubstr("OPD(system) - OPD(first_system)"));
       EXPECT_EQ(difference.number("rms_waves"), told["rms_waves"].get<double>());
+      EXPECT_EQ(difference.number("rms_without_tilt_waves"), told["rms_without_tilt_waves"].get<double>());
       // spots at one scale
       EXPECT_EQ(by_name["lens-a.spot." + at]->pair("pixel_size_mm").x, by_name["lens-b.spot." + at]->pair("pixel_size_mm").x);
     }
@@ -248,97 +244,6 @@ TEST(CompareCommand, exit_status_tells_wrong_usage_from_wrong_input) {
   EXPECT_THAT(axes.err, HasSubstr("--with:1:1: error: axes must be local for the format cso"));
   EXPECT_EQ(run_program("compare --help").status, 0);
 }
-
-const std::string eye = systems + "eye-with-measured-cornea.yaml --surface 'anterior cornea' --with " + systems + "measured-cornea.xyz --axes osa";
-
-TEST(CompareCommand, variants_are_the_system_with_one_surface_replaced) {
-  const json summary = compared(eye + " --as delaunay,delaunay:linear,zernike:36 --rays 400");
-  ASSERT_EQ(summary["systems"].size(), 3u);
-  EXPECT_EQ(summary["systems"][0]["system"], "delaunay");
-  EXPECT_EQ(summary["systems"][1]["slug"], "delaunay-linear");
-  EXPECT_EQ(summary["systems"][2]["system"], "zernike:36");
-  EXPECT_EQ(summary["comparison"], "Eye with a measured cornea, anterior cornea from measured-cornea.xyz");
-  const json alone = traced(systems + "eye-with-measured-cornea.yaml", "--rays 400");  // c1 is the default there too
-  EXPECT_EQ(summary["systems"][0]["results"], alone["results"]);
-  EXPECT_EQ(summary["systems"][0]["results"][1]["coverage"][0]["share"], 1);
-  EXPECT_FALSE(summary["systems"][0].contains("note"));
-  EXPECT_THAT(summary["systems"][1]["note"].get<std::string>(), HasSubstr("unusable for wavefronts"));
-  EXPECT_FALSE(summary["systems"][2].contains("note"));
-  EXPECT_FALSE(summary["systems"][0].contains("fit"));
-  const json& fit = summary["systems"][2]["fit"];
-  EXPECT_EQ(fit["terms"], 36);
-  EXPECT_LT(fit["residual_rms_um"].get<double>(), 0.001);  // the model cornea is nearly of 36 terms
-  // 5 % more than the greatest distance of the beam's rays from the axis; a fan through the rim shows nearly that
-  const Outcome rays = run_program("rays " + systems + "eye-with-measured-cornea.yaml --fan y:3");
-  double reach = 0;
-  for (const RayRow& row : parse_rays(rays.out))
-    if (row.surface == 1) reach = std::max(reach, std::hypot(row.x, row.y));
-  EXPECT_GE(fit["radius_mm"].get<double>(), 1.049 * reach * 0.98);  // the outermost ring of 2000 points has 0.98 of the radius
-  EXPECT_LE(fit["radius_mm"].get<double>(), 1.051 * reach);
-}
-
-TEST(CompareCommand, a_fitted_variant_is_the_shape_that_fit_gives) {
-  const Folder folder;
-  ASSERT_EQ(run_program("fit " + systems + "measured-cornea.xyz --axes osa --terms 21 --radius-mm 2.5 -o " + folder.path("shape.yaml")).status, 0);
-  std::istringstream fragment(read_text(folder.path("shape.yaml")));
-  std::string system = "extends: " + systems + "eye-with-measured-cornea.yaml\nsurfaces:\n  - name: anterior cornea\n";
-  for (std::string line; std::getline(fragment, line);) system += "    " + line + "\n";
-  const json alone = traced(folder.file("fitted.yaml", system), "--rays 400");
-  const json summary = compared(eye + " --as zernike:21,delaunay --radius-mm 2.5 --rays 400");
-  EXPECT_EQ(summary["systems"][0]["results"], alone["results"]);
-  EXPECT_EQ(summary["systems"][0]["fit"]["radius_mm"], 2.5);
-}
-
-TEST(CompareCommand, a_fit_goes_no_farther_than_the_data) {
-  const Folder folder;
-  std::string points;
-  for (int i = -20; i <= 20; ++i)
-    for (int j = -20; j <= 20; ++j)
-      if (i * i + j * j <= 400) points += fmt::format("{} {} {}\n", 0.1 * i, 0.1 * j, (i * i + j * j) * 0.01 / 15);
-  const json summary = compared(systems + "eye-with-measured-cornea.yaml --surface 'anterior cornea' --with " + folder.file("small.xyz", points) + " --as delaunay,zernike:10");
-  EXPECT_NEAR(summary["systems"][1]["fit"]["radius_mm"].get<double>(), 2, 1e-12);
-  // what the data do not cover is counted, and lost on one side only
-  const json& difference = summary["differences"][0]["results"][1]["wavefront"];
-  EXPECT_LT(summary["systems"][0]["results"][1]["coverage"][0]["share"].get<double>(), 1);
-  EXPECT_GT(difference["samples_only_in_this"].get<int>(), 0);
-  EXPECT_EQ(difference["samples_only_in_first"], 0);
-}
-
-TEST(CompareCommand, a_fit_that_the_points_do_not_determine_is_refused_with_its_reason) {
-  const Folder folder;
-  const Outcome run = run_program("compare " + systems + "eye-with-measured-cornea.yaml --surface 'anterior cornea' --with " +
-                                  folder.file("four.xyz", "0 0 0\n1 0 0.06\n0 1 0.06\n-1 -1 0.13\n") + " --as delaunay,zernike:36 -o " + folder.path("out"));
-  EXPECT_EQ(run.status, 1);
-  EXPECT_THAT(run.err, HasSubstr("four.xyz:1:1: error: zernike:36: "));
-  EXPECT_FALSE(std::filesystem::exists(folder.path("out")));
-}
-
-class ExportedCornea : public testing::TestWithParam<std::string> {};
-
-TEST_P(ExportedCornea, is_compared_as_it_is) {
-  const char* given = std::getenv("SAGITTA_SHARED");
-  const std::filesystem::path file = std::filesystem::path(given ? given : SAGITTA_SOURCE_DIR "/../shared") / "data/corneas" / GetParam();
-  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there (the test data are optional)";
-  const json summary = compared(systems + "navarro-eye.yaml --surface 'anterior cornea' --with '" + file.string() + "' --format cso --as delaunay,delaunay:linear,zernike:36,zernike:66");
-  ASSERT_EQ(summary["systems"].size(), 4u);
-  for (const json& system : summary["systems"])
-    for (const json& result : system["results"]) {
-      EXPECT_EQ(result["rays"]["ok"], result["rays"]["launched"]);
-      EXPECT_TRUE(result["wavefront"].is_object());
-      for (const json& coverage : result.value("coverage", json::array())) EXPECT_EQ(coverage["share"], 1);
-    }
-  for (const json& difference : summary["differences"])
-    for (const json& result : difference["results"]) EXPECT_EQ(result["wavefront"]["samples"], 3001);
-  const double of_36 = summary["systems"][2]["fit"]["residual_rms_um"], of_66 = summary["systems"][3]["fit"]["residual_rms_um"];
-  EXPECT_LT(of_66, of_36);  // least squares: more terms fit better
-  EXPECT_GT(of_66, 0.05);   // and the noise of the instrument, 0.25 um, is not in them
-  EXPECT_LT(of_36, 2);
-  std::printf("[ report   ] %s: fit residual %.3f um (36 terms), %.3f um (66); wavefronts at field 0 differ from c1 by %.3f (linear), %.3f, %.3f waves rms\n", GetParam().c_str(), of_36, of_66,
-              summary["differences"][0]["results"][0]["wavefront"]["rms_waves"].get<double>(), summary["differences"][1]["results"][0]["wavefront"]["rms_waves"].get<double>(),
-              summary["differences"][2]["results"][0]["wavefront"]["rms_waves"].get<double>());
-}
-
-INSTANTIATE_TEST_SUITE_P(Compared, ExportedCornea, testing::Values("N01.txt", "K02.txt"), [](const auto& one) { return one.param.substr(0, 3); });
 
 }  // namespace
 }  // namespace sagitta::test

@@ -82,6 +82,21 @@ TEST(ConvertCommand, tells_what_is_wrong_and_writes_nothing) {
   EXPECT_FALSE(std::filesystem::exists(to));
 }
 
+TEST(ConvertCommand, never_overwrites_its_points) {
+  const Folder folder;
+  const std::string text = "0 0 0\n1 0 0\n0 1 0.5\n", from = folder.file("p.txt", text);
+  std::filesystem::create_symlink("p.txt", folder.path("link.ply"));
+  std::filesystem::create_hard_link(from, folder.path("hard.ply"));
+  for (const char* to : {"p.txt", "./p.txt", "link.ply", "hard.ply"}) {
+    const Outcome run = run_program("convert " + from + " -o " + folder.path(to));
+    EXPECT_EQ(run.status, 2) << to;
+    EXPECT_EQ(run.out, "") << to;
+    EXPECT_EQ(run.err, "sagitta convert: -o " + folder.path(to) + ": " + folder.path(to) + " is the file of the points, which would be overwritten\n  hint: give another name\n");
+  }
+  EXPECT_EQ(read_text(from), text);
+  EXPECT_TRUE(std::filesystem::is_symlink(folder.path("link.ply")));
+}
+
 TEST(ConvertCommand, writes_nothing_but_printable_text_in_its_header) {
   const Folder folder;
   const std::string file = folder.path("p.ply");

@@ -159,7 +159,7 @@ TEST(FitCommand, refuses_with_a_reason_and_writes_nothing) {
   EXPECT_THAT(reach.err, HasSubstr("do not tell 36 terms over all of the circle: the outermost lies 3.6 mm from the origin\n  hint: take a radius of 3.6 mm or less\n"));
   EXPECT_EQ(run_program("fit " + folder.path("none.xyz")).status, 1);
   EXPECT_EQ(run_program("fit").status, 2);
-  for (const char* options : {"--terms 0", "--terms 2000", "--indexing fringe --terms 38", "--indexing born", "--format dxf", "--axes left", "--radius-mm 0", "--radius-mm -1", "--axes osa --format cso"}) {
+  for (const char* options : {"--terms 0", "--terms 2000", "--indexing fringe --terms 38", "--indexing born", "--format dxf", "--axes left", "--radius-mm 0", "--radius-mm -1", "--radius-mm nan", "--axes osa --format cso"}) {
     const Outcome run = run_program("fit " + shipped + " " + options);
     EXPECT_EQ(run.status, 2) << options;
     EXPECT_NE(run.err, "") << options;
@@ -168,6 +168,52 @@ TEST(FitCommand, refuses_with_a_reason_and_writes_nothing) {
   EXPECT_EQ(name.status, 2);
   EXPECT_THAT(name.err, HasSubstr("expected FILE.yaml"));
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
+}
+
+TEST(FitCommand, never_overwrites_its_points) {
+  const Folder folder;
+  std::filesystem::copy_file(shipped, folder.path("p.yaml"));
+  std::filesystem::copy_file(shipped, folder.path("q.png"));
+  std::filesystem::create_symlink("p.yaml", folder.path("link.yaml"));
+  const std::string before = read_text(folder.path("p.yaml"));
+  for (const std::string& both : {"p.yaml -o " + folder.path("p.yaml"), "p.yaml -o " + folder.path("./p.yaml"), "p.yaml -o " + folder.path("link.yaml"), "link.yaml -o " + folder.path("p.yaml"),
+                                  "q.png -o " + folder.path("q.yaml")}) {
+    const Outcome run = run_program("fit " + folder.path(both));
+    EXPECT_EQ(run.status, 2) << both;
+    EXPECT_EQ(run.out, "") << both;
+    EXPECT_THAT(run.err, HasSubstr("is the file of the points, which would be overwritten")) << both;
+  }
+  EXPECT_EQ(read_text(folder.path("p.yaml")), before);
+  EXPECT_EQ(read_text(folder.path("q.png")), before);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 3);
+}
+
+TEST(FitCommand, leaves_no_fragment_where_a_picture_cannot_be_written) {
+  const Folder folder;
+  std::filesystem::create_directory(folder.path("fit.png"));
+  const Outcome run = run_program("fit " + shipped + " -o " + folder.path("fit.yaml"));
+  EXPECT_EQ(run.status, 1);
+  EXPECT_THAT(run.err, HasSubstr("fit.png"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path("fit.yaml")));
+}
+
+// z = u/500 + u^2/2500 is c u/2 + q c u^2/8 with c = 1/250 and q = 0.8: 1 + K = q/c^2 = 5e4, no conic that reaches the rim.
+TEST(FitCommand, says_where_the_conic_is_but_the_sphere) {
+  const Folder folder;
+  std::string points;
+  for (int i = -9; i <= 9; ++i)
+    for (int j = -9; j <= 9; ++j) {
+      const double u = 0.25 * (i * i + j * j);
+      points += std::to_string(0.5 * i) + " " + std::to_string(0.5 * j) + " " + std::to_string(u / 500 + u * u / 2500) + "\n";
+    }
+  const std::string command = "fit " + folder.file("steep.xyz", points) + " --terms 10 --radius-mm 4";
+  const json found = json::parse(run_program(command + " --json").out);
+  EXPECT_EQ(found["conic"]["is_sphere"], true);
+  EXPECT_EQ(found["conic"]["radius_mm"], found["sphere"]["radius_mm"]);
+  EXPECT_THAT(run_program(command + " -o " + folder.path("f.yaml")).out, HasSubstr("\nthe points tell no conic constant from -100 to 100: the conic is the sphere\n"));
+  EXPECT_THAT(read_text(folder.path("f.yaml")), HasSubstr("# A surface's shape: the best-fit sphere of "));
+  EXPECT_EQ(json::parse(run_program("fit " + shipped + " --json").out)["conic"]["is_sphere"], false);
+  EXPECT_THAT(run_program("fit " + shipped).out, testing::Not(HasSubstr("the conic is the sphere")));
 }
 
 // A plane has no radius: null in JSON, .inf in the shape, which is a prescription's word for it.

@@ -38,7 +38,7 @@ Comparison comparison_of(double first_rms, double other_rms, bool other_is_of_fa
     analysis::Wavefront wavefront;
     wavefront.size = 8;
     wavefront.mask.assign(64, 0);
-    for (int i = 0; i < 64; ++i) wavefront.opd_waves.push_back(rms * i);
+    for (int i = 0; i < 64; ++i) wavefront.opd_waves.push_back(rms * (i + (i % 8 - 3.5) * (i / 8 - 3.5)));
     result.wavefront = analysis::WavefrontResult{std::move(wavefront), {}, {}};
     system.report.results = {std::move(result)};
     comparison.systems.push_back(std::move(system));
@@ -59,12 +59,14 @@ TEST(Comparison, sheets_have_a_row_for_each_system_and_common_scales) {
   EXPECT_EQ(panels[4].title, "B: wavefront");
   EXPECT_EQ(panels[5].title, "B − A");
   ASSERT_TRUE(panels[1].range && panels[4].range && panels[5].range);
-  EXPECT_FLOAT_EQ(static_cast<float>(panels[1].range->high), 0.02f * 63);
+  EXPECT_FLOAT_EQ(static_cast<float>(panels[1].range->high), 0.02f * 75.25f);
   EXPECT_EQ(panels[1].range->high, panels[4].range->high);
   EXPECT_EQ(panels[5].range->low, -panels[5].range->high);
-  // the difference 0.01 i, about its mean
-  EXPECT_FLOAT_EQ(panels[5].map.values.front(), -0.01f * 31.5f);
-  EXPECT_FLOAT_EQ(panels[5].map.values.back(), 0.01f * 31.5f);
+  // the difference 0.01 (i + x y), x and y from the middle: i is a plane, x y has none
+  EXPECT_NEAR(panels[5].map.values.front(), 0.01 * 12.25, 1e-7);
+  EXPECT_NEAR(panels[5].map.values[7], -0.01 * 12.25, 1e-7);
+  EXPECT_EQ(panels[5].subtitle.front().find("RMS without piston and tilt "), 0u);
+  EXPECT_NE(figures[0].footer.find("without piston and tilt"), std::string::npos);
   // three of the larger RMS radius to each side, 0.06 mm, are 12 pixels; the ray at 0.2 mm is beyond
   for (const std::size_t i : {0, 3}) {
     EXPECT_EQ(panels[i].map.width, 12);

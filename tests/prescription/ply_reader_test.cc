@@ -127,6 +127,16 @@ TEST(Ply, RefusesFilesThatWereCutOffAndHeadersThatLie) {
               AllOf(HasSubstr("points:8:1: error: 4 numbers where a vertex has 3: \"1 2 3 4\""), HasSubstr("points:9:1: error: 2 numbers")));
 }
 
+TEST(Ply, RefusesWhatGoesOnBehindItsLastElement) {
+  const auto longer = read(doubles(points) + std::string(5, '\0'));
+  EXPECT_EQ(longer.cloud, nullptr);
+  EXPECT_THAT(longer.told, HasSubstr("the file goes on for 5 bytes behind the last vertex, and the header has no element there"));
+  // too few vertices announced, or a property forgotten
+  std::string short_of_one = doubles(points);
+  short_of_one.replace(short_of_one.find("vertex 3"), 8, "vertex 2");
+  EXPECT_THAT(read(short_of_one).told, HasSubstr("goes on for 24 bytes"));
+}
+
 TEST(Ply, TellsWhatIsWrongWithAHeader) {
   const auto told = [](const std::string& elements) { return read(header("ascii", elements) + "1 2 3\n").told; };
   const std::string vertex = "element vertex 1\n";
