@@ -322,7 +322,9 @@ void expect_c1_to_be_exact_enough(const PointCloud& cloud, const Kind& kind, con
     if (interpolation == "c1") {
       EXPECT_LE(errors.sag_rms_um, .02);
       EXPECT_LE(errors.wavefront.rms_waves, .02);
-      if (to_its_own_sphere_too) EXPECT_LE(errors.own_wavefront.rms_waves, .02);
+      if (to_its_own_sphere_too) {
+        EXPECT_LE(errors.own_wavefront.rms_waves, .02);
+      }
     } else {
       // Unusable for wavefronts: rings .2174 mm apart on a curvature of .13/mm leave .13 x .2174^2/8 = .77 um of sag between
       // them, .52 waves; about a wave from place to place.
