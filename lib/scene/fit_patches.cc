@@ -120,20 +120,20 @@ class VertexFits {
   std::vector<std::uint32_t> waiting_, unfinished_, sorted_;
 };
 
-CloughTocherPatch patch_of(const Mesh& mesh, const surface::Corners& corner, const std::vector<CubicFit>& fits) {
+CloughTocherPatch patch_of(const Mesh& mesh, std::uint32_t facet, const std::vector<CubicFit>& fits) {
+  const surface::Corners& corner = mesh.corners[facet];
   CloughTocherPatch::Corner corners[3];
   CloughTocherPatch::Slope slopes[3];
   for (int i = 0; i < 3; ++i) {
     const std::uint32_t v = corner[i];
-    const auto slope = fits[v].gradient(0, 0);
-    corners[i] = {mesh.vertices[v], slope.x, slope.y};
+    corners[i] = {mesh.vertices[v], fits[v].gradient(0, 0)};
     // both facets of the edge take its ends in the same order, so their slopes have the same bits
     const auto [a, b] = std::minmax(corner[(i + 1) % 3], corner[(i + 2) % 3]);
     const double X = (mesh.vertices[b].x - mesh.vertices[a].x) / 2, Y = (mesh.vertices[b].y - mesh.vertices[a].y) / 2;
     const auto from_a = fits[a].gradient(X, Y), from_b = fits[b].gradient(-X, -Y);
     slopes[i] = {(from_a.x + from_b.x) / 2, (from_a.y + from_b.y) / 2};
   }
-  return CloughTocherPatch::of(corners, slopes);
+  return CloughTocherPatch::of(corners, mesh.facets[facet], slopes);
 }
 
 // work(begin, end) on blocks of 0 .. count
@@ -160,7 +160,7 @@ PatchFit fit_patches(const Mesh& mesh, int thread_count) {
   result.patches.resize(mesh.facet_count);
   share(mesh.facet_count, thread_count, [&] {
     return [&](std::uint32_t begin, std::uint32_t end) {
-      for (std::uint32_t f = begin; f < end; ++f) result.patches[f] = patch_of(mesh, mesh.corners[f], fits);
+      for (std::uint32_t f = begin; f < end; ++f) result.patches[f] = patch_of(mesh, f, fits);
     };
   });
   return result;

@@ -82,7 +82,7 @@ TEST(FitPatches, are_exact_for_cubics_on_every_layout) {
         if (fit.reaches_rim[corner[0]] || fit.reaches_rim[corner[1]] || fit.reaches_rim[corner[2]]) continue;
         ++compared;
         const auto& p = fit.patches[f];
-        const auto sheet = p.evaluate(p.locate(p.x, p.y));
+        const auto sheet = p.evaluate(p.x, p.y, storage->facets[f]);
         ASSERT_NEAR(sheet.z, cubic(p.x, p.y), 1e-12) << layout.name << ' ' << turn;
         ASSERT_NEAR(sheet.dz_dx, 0.1 + 0.12 * p.x + 0.01 * p.y + 0.009 * p.x * p.x - 0.004 * p.x * p.y + 0.004 * p.y * p.y, 1e-10)
             << layout.name << ' ' << turn;
@@ -100,8 +100,10 @@ TEST(FitPatches, fall_back_to_what_the_points_determine) {
   const auto plane = [](double x, double y) { return 1 + 0.1 * x - 0.2 * y; };
   const auto check = [](const std::vector<Place2>& places, const Height& height) {
     const auto storage = triangulate(cloud_of(places, height)).mesh;
-    for (const CloughTocherPatch& p : fit_patches(storage->mesh).patches) {
-      const auto sheet = p.evaluate(p.locate(p.x, p.y));
+    const auto patches = fit_patches(storage->mesh).patches;
+    for (std::size_t f = 0; f < patches.size(); ++f) {
+      const CloughTocherPatch& p = patches[f];
+      const auto sheet = p.evaluate(p.x, p.y, storage->facets[f]);
       EXPECT_NEAR(sheet.z, height(p.x, p.y), 1e-12);
     }
   };
