@@ -11,9 +11,9 @@ namespace sagitta::numerics {
 class Arena {
  public:
   // The address stays valid as long as the arena, or a copy of it, lives.
-  template <class T>
-  const T* keep(std::vector<T> values) {
-    auto held = std::make_shared<const std::vector<T>>(std::move(values));
+  template <class T, class Allocator>
+  const T* keep(std::vector<T, Allocator> values) {
+    auto held = std::make_shared<const std::vector<T, Allocator>>(std::move(values));
     kept_.push_back(held);
     return held->data();
   }

@@ -18,46 +18,59 @@ using surface::Facet;
 using surface::Mesh;
 using surface::no_facet;
 
-// The facets in the order of their corners' numbers, the lowest corner first: the numbers run along a curve, so what is
-// near on the surface is near in memory, and the order of any two facets depends on nothing else.
-void sort_by_corners(std::size_t point_count, std::vector<RawFacet>& facets) {
-  const auto lowest = [](const RawFacet& facet) { return std::min({facet.corner[0], facet.corner[1], facet.corner[2]}); };
-  const auto all = [](const RawFacet& facet) {
-    auto corners = facet.corner;
-    std::sort(corners.begin(), corners.end());
-    return corners;
-  };
-  std::vector<std::uint32_t> begin(point_count + 1, 0);
-  for (const RawFacet& facet : facets) ++begin[lowest(facet) + 1];
-  for (std::size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
-  std::vector<std::uint32_t> order(facets.size()), filled(begin.begin(), begin.end() - 1);
-  for (std::uint32_t f = 0; f < facets.size(); ++f) order[filled[lowest(facets[f])]++] = f;
-  for (std::size_t i = 0; i < point_count; ++i)
-    std::sort(order.begin() + begin[i], order.begin() + begin[i + 1],
-              [&](std::uint32_t f, std::uint32_t g) { return all(facets[f]) < all(facets[g]); });
-  std::vector<std::uint32_t> new_index(facets.size());
-  for (std::uint32_t k = 0; k < order.size(); ++k) new_index[order[k]] = k;
-  std::vector<RawFacet> sorted(facets.size());
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    RawFacet& facet = sorted[k] = facets[order[k]];
-    for (std::uint32_t& next : facet.neighbour) next = next == no_facet ? no_facet : new_index[next];
-  }
-  facets = std::move(sorted);
+// What is read in an order that nothing could guess is asked for so many facets ahead.
+constexpr std::size_t ahead = 16;
+void ask_for(const std::vector<RawFacet>& facets, const std::vector<std::uint32_t>& order, std::size_t k) {
+  if (k < order.size()) __builtin_prefetch(&facets[order[k]]);
 }
 
-// The places that facets use, in their order.
-void take_vertices(const PointCloud& places, const std::vector<RawFacet>& facets, MeshStorage& mesh) {
+// The order of the facets that stay by their corners' numbers, the lowest corner first: the numbers run along a curve, so what is
+// near on the surface is near in memory, and the order of any two facets depends on nothing else.
+std::vector<std::uint32_t> order_by_corners(std::size_t point_count, const std::vector<RawFacet>& facets, const std::vector<char>& gone) {
+  struct Others {  // the two other corners, the lower one in front
+    std::uint64_t key;
+    std::uint32_t facet;
+    bool operator<(const Others& other) const { return key < other.key; }
+  };
+  const auto lowest = [](const RawFacet& facet) { return std::min(facet.corner[0], std::min(facet.corner[1], facet.corner[2])); };
+  const auto others = [&](std::uint32_t f) {
+    const auto [a, b, c] = facets[f].corner;
+    const std::uint32_t highest = std::max(a, std::max(b, c)), middle = std::max(std::min(a, b), std::min(std::max(a, b), c));
+    return Others{std::uint64_t{middle} << 32 | highest, f};
+  };
+  std::vector<std::uint32_t> end(point_count + 1, 0);  // of the facets of each lowest corner; at first where they begin
+  for (std::size_t f = 0; f < facets.size(); ++f) end[lowest(facets[f]) + 1] += !gone[f];
+  for (std::size_t i = 1; i < end.size(); ++i) end[i] += end[i - 1];
+  std::vector<std::uint32_t> order(end.back());
+  for (std::uint32_t f = 0; f < facets.size(); ++f)
+    if (!gone[f]) order[end[lowest(facets[f])]++] = f;
+  std::vector<Others> few;
+  for (std::size_t i = 0, begin = 0; i < point_count; begin = end[i++]) {
+    if (end[i] - begin < 2) continue;
+    few.clear();
+    for (std::size_t k = begin; k < end[i]; ++k) {
+      ask_for(facets, order, k + ahead);
+      few.push_back(others(order[k]));
+    }
+    std::sort(few.begin(), few.end());
+    for (std::size_t k = begin; k < end[i]; ++k) order[k] = few[k - begin].facet;
+  }
+  return order;
+}
+
+// The places that facets use, in their order. vertex_of[place], where used
+std::vector<std::uint32_t> take_vertices(const PointCloud& places, const std::vector<RawFacet>& facets, const std::vector<char>& gone,
+                                         MeshStorage& mesh) {
   std::vector<std::uint32_t> vertex_of(places.points.size(), 0);
-  for (const RawFacet& facet : facets)
-    for (const std::uint32_t corner : facet.corner) vertex_of[corner] = 1;
+  for (std::size_t f = 0; f < facets.size(); ++f)
+    for (const std::uint32_t corner : facets[f].corner) vertex_of[corner] |= !gone[f];
+  mesh.vertices.reserve(places.points.size());
   for (std::size_t i = 0; i < vertex_of.size(); ++i) {
     if (!vertex_of[i]) continue;
     vertex_of[i] = static_cast<std::uint32_t>(mesh.vertices.size());
     mesh.vertices.push_back(places.points[i]);
   }
-  mesh.corners.reserve(facets.size());
-  for (const RawFacet& facet : facets)
-    mesh.corners.push_back({vertex_of[facet.corner[0]], vertex_of[facet.corner[1]], vertex_of[facet.corner[2]]});
+  return vertex_of;
 }
 
 // surface/mesh.h, Facet. In long double, so that the plane of a thin facet still passes through its corners.
@@ -82,25 +95,33 @@ Facet facet_between(const Vec3<double>& v0, const Vec3<double>& v1, const Vec3<d
   return facet;
 }
 
-void make_facets(const std::vector<RawFacet>& raw, MeshStorage& storage) {
-  storage.facets.reserve(raw.size());
-  for (std::size_t f = 0; f < raw.size(); ++f) {
-    const Corners& corners = storage.corners[f];
+void make_facets(const PointCloud& places, const std::vector<RawFacet>& raw, const std::vector<std::uint32_t>& order,
+                 const std::vector<std::uint32_t>& vertex_of, MeshStorage& storage) {
+  std::vector<std::uint32_t> new_index(raw.size(), no_facet);
+  for (std::uint32_t k = 0; k < order.size(); ++k) new_index[order[k]] = k;
+  storage.corners.reserve(order.size());
+  storage.facets.reserve(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    ask_for(raw, order, k + ahead);
+    const RawFacet turned = from_widest_corner(places, raw[order[k]]);
+    const auto [a, b, c] = turned.corner;
+    const Corners& corners = storage.corners.emplace_back(Corners{vertex_of[a], vertex_of[b], vertex_of[c]});
     Facet& facet = storage.facets.emplace_back(facet_between(storage.vertices[corners[0]], storage.vertices[corners[1]],
                                                              storage.vertices[corners[2]], storage.mesh));
-    std::copy(raw[f].neighbour.begin(), raw[f].neighbour.end(), facet.neighbour);
+    for (std::size_t i = 0; i < 3; ++i) facet.neighbour[i] = turned.neighbour[i] == no_facet ? no_facet : new_index[turned.neighbour[i]];
   }
 }
 
-void refuse_cliffs(const PointCloud& cloud, const std::vector<RawFacet>& facets, const MeshStorage& mesh,
-                   prescription::Findings& findings) {
+void refuse_cliffs(const PointCloud& cloud, const std::vector<RawFacet>& facets, const std::vector<std::uint32_t>& order,
+                   const MeshStorage& mesh, prescription::Findings& findings) {
   std::set<std::pair<std::uint32_t, std::uint32_t>> told;  // by both facets of the edge
-  for (std::size_t f = 0; f < facets.size() && told.size() < 100; ++f) {
-    const Facet& facet = mesh.facets[f];
+  for (std::size_t k = 0; k < order.size() && told.size() < 100; ++k) {
+    const Facet& facet = mesh.facets[k];
     if (std::abs(facet.slope_x) <= steepest_slope && std::abs(facet.slope_y) <= steepest_slope) continue;
-    const auto length = [&](int i) { return edge_length(cloud, facets[f], i); };
+    const RawFacet raw = from_widest_corner(cloud, facets[order[k]]);
+    const auto length = [&](int i) { return edge_length(cloud, raw, i); };
     const int shortest = length(0) < length(1) ? (length(0) < length(2) ? 0 : 2) : (length(1) < length(2) ? 1 : 2);
-    const auto corner = [&](int i) { return facets[f].corner[static_cast<std::size_t>(i % 3)]; };
+    const auto corner = [&](int i) { return raw.corner[static_cast<std::size_t>(i % 3)]; };
     const auto by_line = [&](std::uint32_t a, std::uint32_t b) { return cloud.lines[a] < cloud.lines[b]; };
     const auto [first, second] = std::minmax({corner(shortest + 1), corner(shortest + 2)}, by_line);
     if (!told.emplace(first, second).second) continue;
@@ -123,19 +144,19 @@ void finish(MeshStorage& storage) {
 
 }  // namespace
 
-std::shared_ptr<const MeshStorage> build_mesh(const PointCloud& places, const CloudExtent& extent, std::vector<RawFacet> facets,
-                                              prescription::Findings& findings) {
+std::shared_ptr<const MeshStorage> build_mesh(const PointCloud& places, const CloudExtent& extent, const std::vector<RawFacet>& facets,
+                                              const std::vector<char>& gone, prescription::Findings& findings) {
   auto storage = std::make_shared<MeshStorage>();
   Mesh& mesh = storage->mesh;
   mesh.centre = extent.centre;
   mesh.extent = extent.reach;
   mesh.base = extent.base;
-  sort_by_corners(places.points.size(), facets);
-  take_vertices(places, facets, *storage);
-  make_facets(facets, *storage);
-  refuse_cliffs(places, facets, *storage, findings);
+  {
+    const auto order = order_by_corners(places.points.size(), facets, gone);
+    make_facets(places, facets, order, take_vertices(places, facets, gone, *storage), *storage);
+    refuse_cliffs(places, facets, order, *storage, findings);
+  }
   if (findings.has_errors()) return nullptr;
-  facets = {};
   finish(*storage);
   return storage;
 }

@@ -23,8 +23,8 @@ using Storage = std::shared_ptr<const MeshStorage>;
 constexpr double least_layers = 14, most_layers = 112;
 
 // Facets whose interpolant could be another one in the whole cloud are left out of a part.
-template <class Patch>
-void leave_out(const std::vector<char>& is_dropped, Storage& mesh, std::vector<Patch>& patches) {
+template <class PatchArray>
+void leave_out(const std::vector<char>& is_dropped, Storage& mesh, PatchArray& patches) {
   mesh = without_facets(*mesh, is_dropped);
   std::size_t kept = 0;
   for (std::size_t f = 0; f < patches.size(); ++f)

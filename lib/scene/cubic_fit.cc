@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "lib/numerics/instruction_set.h"
+
 namespace sagitta::scene {
 namespace {
 
@@ -17,7 +19,7 @@ constexpr double smallest_square = 1e-290;
 // (1), from sums of X^2, XY and Y^2. Points that all lie on one line through V leave it zero, and nothing is determined.
 CubicFit coordinates_of(double count, double xx, double xy, double yy) {
   const double shear = xy / xx, vv = yy - shear * xy;
-  CubicFit fit;
+  CubicFit fit{};
   // (Rounding may leave a line some vv, about eps yy, far above the true one: then v is small, and (3) refuses it.)
   if (!(xx > smallest_square && vv > smallest_square)) return fit;
   fit.u_per_x = std::sqrt(count / xx);
@@ -59,7 +61,7 @@ template <std::size_t k>
   }
 }
 
-std::array<CubicFit, CubicFits::lanes> CubicFits::solve() {
+[[gnu::always_inline]] inline CubicFits::Fits CubicFits::solve_here() {
   const std::size_t row_count = *std::max_element(counts_.begin(), counts_.end());
   // Rows of zeros add nothing to any sum, to the bit.
   for (std::size_t lane = 0; lane < lanes; ++lane) {
@@ -92,10 +94,10 @@ std::array<CubicFit, CubicFits::lanes> CubicFits::solve() {
   eliminate<0>(row_count, sums, F);
 
   // Column by column of F^-1.
-  std::array<Lanes, cubic_terms> c{};
+  Row c{};
   Lanes amplified{};
   for (std::size_t j = 0; j < cubic_terms; ++j) {
-    std::array<Lanes, cubic_terms> column;
+    Row column;
     column[j] = Lanes{} + 1;
     Lanes squares = column[j];
     for (std::size_t i = j; i-- > 0;) {
@@ -115,6 +117,17 @@ std::array<CubicFit, CubicFits::lanes> CubicFits::solve() {
     }
   }
   return fits;
+}
+
+#if defined(__x86_64__)
+[[gnu::target("arch=x86-64-v3")]] CubicFits::Fits CubicFits::solve_for_v3() { return solve_here(); }
+#endif
+
+std::array<CubicFit, CubicFits::lanes> CubicFits::solve() {
+#if defined(__x86_64__)
+  if (numerics::instruction_set() != numerics::InstructionSet::any) return solve_for_v3();
+#endif
+  return solve_here();
 }
 
 }  // namespace sagitta::scene

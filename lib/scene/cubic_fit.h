@@ -29,9 +29,9 @@ namespace sagitta::scene {
 struct CubicFit {
   static constexpr int cubic_terms = 9, quadratic_terms = 5, plane_terms = 2;
 
-  std::array<double, cubic_terms> c{};           // (2); zero where not determined
-  double u_per_x = 0, v_per_y = 0, shear = 0;    // 1/s_u, 1/s_v and t of (1)
-  int terms = 0;                                 // determined: 9, 5, 2 or none
+  std::array<double, cubic_terms> c;    // (2); zero where not determined
+  double u_per_x, v_per_y, shear;       // 1/s_u, 1/s_v and t of (1)
+  int terms;                            // determined: 9, 5, 2 or none
 
   surface::CloughTocherPatch::Slope gradient(double X, double Y) const {
     const double u = u_per_x * X, v = v_per_y * (Y - shear * X);
@@ -45,7 +45,7 @@ struct CubicFit {
 // and their order alone.
 class CubicFits {
  public:
-  static constexpr std::size_t lanes = 2;
+  static constexpr std::size_t lanes = 4;
 
   // Next in this lane: V and the points around it.
   void put(std::size_t lane, const numerics::Vec3<double>& V, const numerics::Vec3<double>* points, std::span<const std::uint32_t> around);
@@ -54,8 +54,18 @@ class CubicFits {
 
  private:
   using Lanes [[gnu::vector_size(lanes * sizeof(double))]] = double;
-  using Row = std::array<Lanes, CubicFit::cubic_terms + 1>;  // the terms of (2), and the height
+  // The terms of (2), and the height. Aligned as processors with vectors of this size want it: the compiler aligns such
+  // vectors for the machine that it compiles this header for.
+  struct alignas(lanes * sizeof(double)) Row {
+    Lanes of[CubicFit::cubic_terms + 1];
+    Lanes& operator[](std::size_t term) { return of[term]; }
+    const Lanes& operator[](std::size_t term) const { return of[term]; }
+  };
+  using Fits = std::array<CubicFit, lanes>;
 
+  // The same body for each instruction set, with the same bits.
+  Fits solve_here();
+  Fits solve_for_v3();
   template <std::size_t k>
   void eliminate(std::size_t row_count, Row& sums, std::array<Row, CubicFit::cubic_terms>& F);
 

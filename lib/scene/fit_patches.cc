@@ -23,22 +23,10 @@ constexpr double narrow = 20;                   // longest edge of a vertex over
 constexpr std::size_t enough_points = 150;     // of many
 constexpr std::size_t most_points = 300;  // where a neighbourhood grows no more
 
-// In the order of their numbers, so that the bits do not depend on the order in which rings reach them. Few are sorted by
-// counting for each how many are less: nothing could predict the branches of another sort.
-void sort_by_number(std::span<const std::uint32_t> vertices, std::vector<std::uint32_t>& sorted) {
-  sorted.assign(vertices.begin(), vertices.end());
-  if (vertices.size() > 64) return std::sort(sorted.begin(), sorted.end());
-  for (const std::uint32_t vertex : vertices) {
-    std::uint32_t rank = 0;
-    for (const std::uint32_t other : vertices) rank += other < vertex;
-    sorted[rank] = vertex;
-  }
-}
-
 // The fits of a few vertices at a time, into the results.
 class VertexFits {
  public:
-  VertexFits(const Mesh& mesh, const Neighbours& neighbours, const std::vector<char>& is_on_rim, std::vector<CubicFit>& fits,
+  VertexFits(const Mesh& mesh, const Neighbours& neighbours, const std::vector<char>& is_on_rim, numerics::UnsetArray<CubicFit>& fits,
              std::vector<char>& reaches_rim)
       : mesh_(mesh), is_on_rim_(is_on_rim), fits_(fits), reaches_rim_(reaches_rim), neighbours_(neighbours), rings_(neighbours) {}
 
@@ -76,22 +64,25 @@ class VertexFits {
   void widen(std::uint32_t vertex) {
     double shortest = std::numeric_limits<double>::infinity(), second = shortest, longest = 0;  // squares
     for (const std::uint32_t next : neighbours_.of(vertex)) {
-      const double square = square_of_distance(vertex, next);
-      second = std::min(second, std::max(shortest, square));
-      shortest = std::min(shortest, square);
-      longest = std::max(longest, square);
+      const double square = square_of_distance(vertex, next), not_shortest = square > shortest ? square : shortest;
+      second = not_shortest < second ? not_shortest : second;
+      shortest = square < shortest ? square : shortest;
+      longest = square > longest ? square : longest;
     }
     if (!(longest > narrow * narrow * second)) return;
     rings_.add_all([&](std::uint32_t next) { return square_of_distance(vertex, next) <= longest; });
   }
-  void thin_out() {
+  std::span<const std::uint32_t> thinned_out(std::span<const std::uint32_t> around) {
+    sorted_.assign(around.begin(), around.end());
+    std::sort(sorted_.begin(), sorted_.end());
     const std::size_t stride = 1 + sorted_.size() / enough_points;
     std::size_t kept = 0;
     for (std::size_t i = stride / 2; i < sorted_.size(); i += stride) sorted_[kept++] = sorted_[i];
-    sorted_.resize(kept);
+    return std::span(sorted_).first(kept);
   }
 
-  // True if further rings would add nothing that may be taken.
+  // True if further rings would add nothing that may be taken. Points are fitted in the order in which rings reach them:
+  // by the order of the facets around each vertex, which is the same in every mesh that has these facets.
   bool gather(std::uint32_t vertex, int rings, std::size_t lane) {
     rings_.start({vertex});
     bool is_all = false;
@@ -102,17 +93,18 @@ class VertexFits {
       is_all = now == before || (ring >= least_rings && now >= most_points);
     }
     widen(vertex);
-    sort_by_number(rings_.vertices().subspan(1), sorted_);
-    // (a vertex of the rim has neighbours there)
-    reaches_rim_[vertex] = std::any_of(sorted_.begin(), sorted_.end(), [&](std::uint32_t v) { return is_on_rim_[v]; });
-    if (sorted_.size() > most_points) thin_out();
-    cubics_.put(lane, mesh_.vertices[vertex], mesh_.vertices, sorted_);
+    std::span<const std::uint32_t> around = rings_.vertices().subspan(1);
+    char reaches_rim = 0;  // (a vertex of the rim has neighbours there)
+    for (const std::uint32_t v : around) reaches_rim |= is_on_rim_[v];
+    reaches_rim_[vertex] = reaches_rim;
+    if (around.size() > most_points) around = thinned_out(around);
+    cubics_.put(lane, mesh_.vertices[vertex], mesh_.vertices, around);
     return is_all;
   }
 
   const Mesh& mesh_;
   const std::vector<char>& is_on_rim_;
-  std::vector<CubicFit>& fits_;
+  numerics::UnsetArray<CubicFit>& fits_;
   std::vector<char>& reaches_rim_;
   const Neighbours& neighbours_;
   Rings rings_;
@@ -120,15 +112,15 @@ class VertexFits {
   std::vector<std::uint32_t> waiting_, unfinished_, sorted_;
 };
 
-CloughTocherPatch patch_of(const Mesh& mesh, std::uint32_t facet, const std::vector<CubicFit>& fits) {
+CloughTocherPatch patch_of(const Mesh& mesh, std::uint32_t facet, const numerics::UnsetArray<CubicFit>& fits) {
   const surface::Corners& corner = mesh.corners[facet];
   CloughTocherPatch::Corner corners[3];
   CloughTocherPatch::Slope slopes[3];
   for (int i = 0; i < 3; ++i) {
     const std::uint32_t v = corner[i];
     corners[i] = {mesh.vertices[v], fits[v].gradient(0, 0)};
-    // both facets of the edge take its ends in the same order, so their slopes have the same bits
-    const auto [a, b] = std::minmax(corner[(i + 1) % 3], corner[(i + 2) % 3]);
+    // The two facets of an edge have its ends the other way round, and slopes of the same bits: signs and sums are exact.
+    const std::uint32_t a = corner[(i + 1) % 3], b = corner[(i + 2) % 3];
     const double X = (mesh.vertices[b].x - mesh.vertices[a].x) / 2, Y = (mesh.vertices[b].y - mesh.vertices[a].y) / 2;
     const auto from_a = fits[a].gradient(X, Y), from_b = fits[b].gradient(-X, -Y);
     slopes[i] = {(from_a.x + from_b.x) / 2, (from_a.y + from_b.y) / 2};
@@ -151,7 +143,7 @@ void share(std::uint32_t count, int thread_count, const MakeWorker& make_worker)
 PatchFit fit_patches(const Mesh& mesh, int thread_count) {
   PatchFit result;
   result.reaches_rim.resize(mesh.vertex_count);
-  std::vector<CubicFit> fits(mesh.vertex_count);
+  numerics::UnsetArray<CubicFit> fits(mesh.vertex_count);
   {
     const Neighbours neighbours(mesh);
     const std::vector<char> is_on_rim = vertices_on_rim(mesh);

@@ -15,13 +15,14 @@
 
 #include <vector>
 
+#include "lib/numerics/unset_array.h"
 #include "lib/scene/triangulate.h"
 #include "lib/surface/clough_tocher.h"
 
 namespace sagitta::scene {
 
 struct PatchFit {
-  std::vector<surface::CloughTocherPatch> patches;  // one a facet
+  numerics::UnsetArray<surface::CloughTocherPatch> patches;  // one a facet
   // Of each vertex: a point that its cubic was fitted to, or the vertex itself, lies on the rim or on a hole. A patch with
   // no such corner would have the same bits in a larger mesh that has the same facets there.
   std::vector<char> reaches_rim;

@@ -2,6 +2,7 @@
 // The two ways from a place to a facet (surface/mesh.h): the grid and the tree of boxes.
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "lib/scene/mesh_internal.h"
@@ -18,53 +19,69 @@ constexpr double cells_per_facet = 4;
 
 // The corners of a facet, relative to the mesh's centre.
 std::array<Vec3<double>, 3> triangle(const Mesh& mesh, std::uint32_t facet) {
-  const auto corner = [&](std::size_t i) { return mesh.vertices[mesh.corners[facet][i]] - mesh.centre; };
-  return {corner(0), corner(1), corner(2)};
+  const surface::Corners& corners = mesh.corners[facet];
+  return {mesh.vertices[corners[0]] - mesh.centre, mesh.vertices[corners[1]] - mesh.centre, mesh.vertices[corners[2]] - mesh.centre};
 }
 
-Rectangle rectangle_around(const std::array<Vec3<double>, 3>& corner) {
-  const auto [low_x, high_x] = std::minmax({corner[0].x, corner[1].x, corner[2].x});
-  const auto [low_y, high_y] = std::minmax({corner[0].y, corner[1].y, corner[2].y});
-  return {low_x, low_y, high_x, high_y};
+struct Span {
+  double low, high;
+};
+Span span_of(double a, double b, double c) {
+  const double low = a < b ? a : b, high = a > b ? a : b;
+  return {low < c ? low : c, high > c ? high : c};
 }
 
-// The cells whose middles lie in the triangle: row by row, the columns between two edges. take(row, first, last)
+// The cells whose middles lie in the triangle, row by row: beyond those edges that go down, before those that go up, the
+// corners being anticlockwise. Every edge is taken from its lower end, so that a cell on it goes to one of its facets.
+// Without branches, which nothing could predict. take(row, first, last)
 template <class Take>
 void for_each_row(const surface::Grid& grid, const std::array<Vec3<double>, 3>& corner, Take&& take) {
-  const auto middle_at_or_after = [](double position, std::int32_t count) {  // the least cell with its middle there
-    return static_cast<std::int32_t>(std::clamp(std::ceil(position - 0.5), 0.0, static_cast<double>(count)));
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  // The least cell with its middle there or beyond. Corners lie between -1/2 and the count - 1/2, and so do all places on
+  // edges; corners that are not in one row are at least 2^-54 apart, so that no slope is infinite.
+  const auto next_above = [](double position) {
+    const auto whole = static_cast<std::int32_t>(position);
+    return whole + (whole < position);
   };
-  const Rectangle box = rectangle_around(corner);
-  const std::int32_t end_row = middle_at_or_after((box.high_y - grid.low_y) * grid.rows_per_mm, grid.rows);
-  for (std::int32_t row = middle_at_or_after((box.low_y - grid.low_y) * grid.rows_per_mm, grid.rows); row < end_row; ++row) {
-    const double y = grid.low_y + (row + 0.5) / grid.rows_per_mm;
-    double first = std::numeric_limits<double>::infinity(), last = -first;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Vec3<double>&a = corner[i], &b = corner[(i + 1) % 3];
-      if ((a.y <= y) == (b.y <= y)) continue;
-      const double x = a.x + (b.x - a.x) * ((y - a.y) / (b.y - a.y));
-      first = std::min(first, x);
-      last = std::max(last, x);
-    }
-    if (!(first <= last)) continue;
-    const std::int32_t begin = middle_at_or_after((first - grid.low_x) * grid.columns_per_mm, grid.columns);
-    const std::int32_t end = middle_at_or_after((last - grid.low_x) * grid.columns_per_mm, grid.columns);
-    if (begin < end) take(row, begin, end);
+  double x[3], y[3];  // in cells, from the middle of the first one
+  for (std::size_t i = 0; i < 3; ++i) {
+    x[i] = (corner[i].x - grid.low_x) * grid.columns_per_mm - 0.5;
+    y[i] = (corner[i].y - grid.low_y) * grid.rows_per_mm - 0.5;
+  }
+  double from_x[3], from_y[3], along[3], if_down[3], if_up[3];
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = i == 2 ? 0 : i + 1;
+    const bool is_up = y[j] > y[i], is_down = y[j] < y[i];
+    const double ratio = (x[j] - x[i]) / (y[j] - y[i]);
+    along[i] = y[j] == y[i] ? 0 : ratio;
+    const std::size_t lower = is_up ? i : j;
+    from_x[i] = x[lower];
+    from_y[i] = y[lower];
+    constexpr double if_not_down[2]{-infinity, 0}, if_not_up[2]{infinity, 0};
+    if_down[i] = if_not_down[is_down];
+    if_up[i] = if_not_up[is_up];
+  }
+  const Span rows = span_of(y[0], y[1], y[2]);
+  const std::int32_t end = next_above(rows.high);
+  for (std::int32_t row = next_above(rows.low); row < end; ++row) {
+    const auto at = [&](std::size_t i) { return from_x[i] + (row - from_y[i]) * along[i]; };
+    const double x0 = at(0), x1 = at(1), x2 = at(2);
+    const double first = span_of(x0 + if_down[0], x1 + if_down[1], x2 + if_down[2]).high;
+    const double last = span_of(x0 + if_up[0], x1 + if_up[1], x2 + if_up[2]).low;
+    take(row, next_above(first), next_above(last));
   }
 }
+
+struct Sizes {
+  Rectangle all;
+  double mean_x = 0, mean_y = 0;  // of the facets' rectangles
+};
 
 // Cells as long and wide as half a facet is on average, so that scan lines far apart have long cells. Coarser where facets
 // are so long and thin that their rows would outnumber them by far.
-void lay_grid(MeshStorage& storage) {
+void lay_grid(const Sizes& sizes, MeshStorage& storage) {
   Mesh& mesh = storage.mesh;
-  Rectangle all;
-  double mean_x = 0, mean_y = 0;  // sizes of the facets' rectangles
-  for (std::uint32_t f = 0; f < mesh.facet_count; ++f) {
-    const Rectangle box = rectangle_around(triangle(mesh, f));
-    all = {std::min(all.low_x, box.low_x), std::min(all.low_y, box.low_y), std::max(all.high_x, box.high_x), std::max(all.high_y, box.high_y)};
-    mean_x += (box.high_x - box.low_x) / mesh.facet_count;
-    mean_y += (box.high_y - box.low_y) / mesh.facet_count;
-  }
+  const auto& [all, mean_x, mean_y] = sizes;
   const double size_x = all.high_x - all.low_x, size_y = all.high_y - all.low_y;
   const double cell_count = std::min(cells_per_facet * mesh.facet_count, 2e9);
   const double shape = size_x / mean_x / (size_y / mean_y);
@@ -82,11 +99,18 @@ void lay_grid(MeshStorage& storage) {
   grid.columns_per_mm = per_mm(grid.columns, size_x);
   grid.rows_per_mm = per_mm(grid.rows, size_y);
 
-  storage.grid.assign(static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows), no_facet);
+  const std::size_t cells_in_all = static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows);
+  storage.grid.assign(cells_in_all + 4, no_facet);  // some beyond the last one are written with what they hold
   for (std::uint32_t f = 0; f < mesh.facet_count; ++f) {
     for_each_row(grid, triangle(mesh, f), [&](std::int32_t row, std::int32_t begin, std::int32_t end) {
-      const auto first = storage.grid.begin() + static_cast<std::ptrdiff_t>(row) * grid.columns;
-      std::fill(first + begin, first + end, f);
+      std::uint32_t* const cells = storage.grid.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(grid.columns);
+      // Up to four at once, without a branch on how many.
+      using Four [[gnu::vector_size(16)]] = std::int32_t;
+      Four old, at{begin, begin + 1, begin + 2, begin + 3};
+      std::memcpy(&old, cells + begin, sizeof old);
+      const Four is_in = at < end, now = (old & ~is_in) | (static_cast<std::int32_t>(f) & is_in);
+      std::memcpy(cells + begin, &now, sizeof now);
+      for (std::int32_t i = begin + 4; i < end; ++i) cells[i] = f;
     });
   }
   grid.facets = storage.grid.data();
@@ -103,17 +127,21 @@ Box united(const Box* first, const Box* last) {
   return box;
 }
 
-void grow_tree(MeshStorage& storage) {
+Sizes grow_tree(MeshStorage& storage) {
   Mesh& mesh = storage.mesh;
+  Sizes sizes;
   // Above the rounding of floats and of every test that follows, by far.
   const double margin = 0x1p-22 * mesh.extent;
   const auto box_around = [&](std::uint32_t facet) {
-    const auto corner = triangle(mesh, facet);
-    const Rectangle flat = rectangle_around(corner);
-    const auto [low_z, high_z] = std::minmax({corner[0].z, corner[1].z, corner[2].z});
+    const auto [v0, v1, v2] = triangle(mesh, facet);
+    const Span x = span_of(v0.x, v1.x, v2.x), y = span_of(v0.y, v1.y, v2.y), z = span_of(v0.z, v1.z, v2.z);
+    sizes.all.include(x.low, y.low);
+    sizes.all.include(x.high, y.high);
+    sizes.mean_x += x.high - x.low;
+    sizes.mean_y += y.high - y.low;
     const auto low = [&](double v) { return static_cast<float>(v - margin); };
     const auto high = [&](double v) { return static_cast<float>(v + margin); };
-    return Box{{low(flat.low_x), low(flat.low_y), low(low_z)}, {high(flat.high_x), high(flat.high_y), high(high_z)}};
+    return Box{{low(x.low), low(y.low), low(z.low)}, {high(x.high), high(y.high), high(z.high)}};
   };
   const auto groups = [](std::size_t count, std::size_t size) { return (count + size - 1) / size; };
   storage.boxes.reserve(groups(mesh.facet_count, Mesh::leaf_size) * 8 / 7 + 20);
@@ -134,13 +162,14 @@ void grow_tree(MeshStorage& storage) {
   }
   mesh.boxes = storage.boxes.data();
   mesh.box_count = static_cast<std::uint32_t>(storage.boxes.size());
+  sizes.mean_x /= mesh.facet_count, sizes.mean_y /= mesh.facet_count;
+  return sizes;
 }
 
 }  // namespace
 
 void index_mesh(MeshStorage& storage) {
-  lay_grid(storage);
-  grow_tree(storage);
+  lay_grid(grow_tree(storage), storage);
 }
 
 }  // namespace sagitta::scene

@@ -20,20 +20,22 @@ double edge_length(const prescription::PointCloud& cloud, const RawFacet& facet,
 // Turned so that corner[0] is opposite to the longest edge: cross products of the two edges from there lose least.
 RawFacet from_widest_corner(const prescription::PointCloud& cloud, const RawFacet& facet);
 
-// Leaves out what is no surface; the neighbours of those that stay are renumbered. Facets that are not known, where some
-// are not (known_facets), are left out from the outset and count as outside.
+// Tells which facets are no surface. Those that are not known, where some are not (known_facets), go from the outset and
+// count as outside.
 struct Trimmed {
-  std::vector<RawFacet> facets;
-  std::size_t holes = 0, long_edges = 0, slivers = 0;  // how many went, and why
+  std::vector<char> gone;  // of each facet
+  std::size_t kept = 0, holes = 0, long_edges = 0, slivers = 0;  // how many stay; how many went, and why
 };
-Trimmed trim(const prescription::PointCloud& cloud, std::vector<RawFacet> facets, double max_edge, const std::vector<char>& is_known = {});
+Trimmed trim(const prescription::PointCloud& cloud, const std::vector<RawFacet>& facets, double max_edge, const std::vector<char>& is_known = {});
 
 // Of the triangulation of a cloud's places within a window, which facets are known to be facets of the whole cloud's
 // triangulation, with all that share a corner with them (triangulate.h, "a part").
 std::vector<char> known_facets(const prescription::PointCloud& places, const std::vector<RawFacet>& facets, const Rectangle& window);
 
-// Vertices and facets in the order of the places, which run along a curve. Facets without a slope are errors.
-std::shared_ptr<const MeshStorage> build_mesh(const prescription::PointCloud& places, const CloudExtent& extent, std::vector<RawFacet> facets,
+// Vertices and those facets that are not gone, in the order of the places, which run along a curve. Facets without a slope
+// are errors.
+std::shared_ptr<const MeshStorage> build_mesh(const prescription::PointCloud& places, const CloudExtent& extent,
+                                              const std::vector<RawFacet>& facets, const std::vector<char>& gone,
                                               prescription::Findings& findings);
 
 // The grid and the tree of boxes of a mesh whose vertices and facets are there.

@@ -22,24 +22,27 @@ inline std::vector<char> vertices_on_rim(const surface::Mesh& mesh) {
   return is_on_rim;
 }
 
-// The vertices that share an edge with each vertex, as lists end to end.
+// The vertices that share an edge with each vertex, as lists end to end, in the order of the facets.
 class Neighbours {
  public:
   explicit Neighbours(const surface::Mesh& mesh) : begin_(mesh.vertex_count + 1, 0) {
-    const auto for_each_edge = [&](auto&& take) {
-      for (std::uint32_t f = 0; f < mesh.facet_count; ++f)
-        for (int i = 0; i < 3; ++i) {
-          // every edge once: by the facet of the lower number, or by its only one
-          const std::uint32_t other = mesh.facets[f].neighbour[i];
-          if (other != surface::no_facet && other < f) continue;
-          take(mesh.corners[f][(i + 1) % 3], mesh.corners[f][(i + 2) % 3]);
-        }
+    // Each facet gives each corner the next one anticlockwise: all neighbours of a vertex that facets surround. On a rim
+    // the edge has no facet that would give it the other way round.
+    const auto for_each_pair = [&](auto&& take) {
+      for (std::uint32_t f = 0; f < mesh.facet_count; ++f) {
+        const auto& [a, b, c] = mesh.corners[f];
+        take(a, b), take(b, c), take(c, a);
+        const auto& across = mesh.facets[f].neighbour;
+        if (across[0] == surface::no_facet) take(c, b);
+        if (across[1] == surface::no_facet) take(a, c);
+        if (across[2] == surface::no_facet) take(b, a);
+      }
     };
-    for_each_edge([&](std::uint32_t a, std::uint32_t b) { ++begin_[a + 1], ++begin_[b + 1]; });
+    for_each_pair([&](std::uint32_t vertex, std::uint32_t) { ++begin_[vertex + 1]; });
     for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
     list_.resize(begin_.back());
     std::vector<std::uint32_t> filled(begin_.begin(), begin_.end() - 1);
-    for_each_edge([&](std::uint32_t a, std::uint32_t b) { list_[filled[a]++] = b, list_[filled[b]++] = a; });
+    for_each_pair([&](std::uint32_t vertex, std::uint32_t next) { list_[filled[vertex]++] = next; });
   }
   std::size_t vertex_count() const { return begin_.size() - 1; }
   std::span<const std::uint32_t> of(std::uint32_t vertex) const {
@@ -77,11 +80,15 @@ class Rings {
   // Without branches on what was seen, which nothing could predict.
   void take(std::span<const std::uint32_t> vertices) {
     if (vertices_.size() < count_ + vertices.size()) vertices_.resize(2 * (count_ + vertices.size()));
+    std::uint32_t *const list = vertices_.data(), *const seen = seen_.data();
+    const std::uint32_t round = round_;
+    std::size_t count = count_;
     for (const std::uint32_t vertex : vertices) {
-      vertices_[count_] = vertex;
-      count_ += seen_[vertex] != round_;
-      seen_[vertex] = round_;
+      list[count] = vertex;
+      count += seen[vertex] != round;
+      seen[vertex] = round;
     }
+    count_ = count;
   }
 
   const Neighbours& neighbours_;

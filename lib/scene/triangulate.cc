@@ -106,20 +106,20 @@ void triangulate_within(const Rectangle* window, const PointCloud& cloud, const 
   const PointCloud places = distinct_places(cloud, extent.places, window ? *window : extent.places, findings);
   result.place_count = places.points.size();
   if (findings.has_errors() || !spread_is_legal(places, findings)) return;
-  std::vector<RawFacet> facets = delaunay(places.points);
+  const std::vector<RawFacet> facets = delaunay(places.points);
   const prescription::Place file{cloud.file};
   if (facets.empty()) return findings.error(file, "all points lie on one straight line in (x, y)", "a surface needs points on both sides of it");
   std::vector<char> is_known;
   if (window) is_known = known_facets(places, facets, *window);
-  Trimmed trimmed = trim(places, std::move(facets), max_edge, is_known);
-  if (trimmed.facets.empty()) {
+  const Trimmed trimmed = trim(places, facets, max_edge, is_known);
+  if (trimmed.kept == 0) {
     return findings.error(file,
                           fmt::format("no facet is left between the points: {} touch a hole, {} have an edge longer than max_edge_mm, "
                                       "{} are slivers of the hull",
                                       trimmed.holes, trimmed.long_edges, trimmed.slivers),
                           "points must be spread over an area");
   }
-  result.mesh = build_mesh(places, extent, std::move(trimmed.facets), findings);
+  result.mesh = build_mesh(places, extent, facets, trimmed.gone, findings);
 }
 
 }  // namespace

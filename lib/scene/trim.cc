@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "lib/scene/mesh_internal.h"
@@ -11,6 +12,7 @@ namespace {
 using prescription::PointCloud;
 using surface::no_facet;
 
+constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double widest_circumradius = 2;  // in mean edge lengths
 
 double square_of_edge(const PointCloud& cloud, const RawFacet& facet, std::size_t i) {
@@ -56,35 +58,32 @@ double edge_length(const PointCloud& cloud, const RawFacet& facet, int i) {
 }
 
 RawFacet from_widest_corner(const PointCloud& cloud, const RawFacet& facet) {
-  RawFacet turned = facet;
-  std::ptrdiff_t first = 0;
-  double longest = -1;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double square = square_of_edge(cloud, facet, i);
-    const auto is_before = [&](std::size_t j, std::size_t k) {
-      const auto &p = cloud.points[facet.corner[j]], &q = cloud.points[facet.corner[k]];
-      return p.x != q.x ? p.x < q.x : p.y < q.y;
-    };
-    // Of equal ones that of the first corner in (x, y), whatever the facet's order and the points' numbers.
-    if (square > longest || (square == longest && is_before(i, static_cast<std::size_t>(first)))) {
-      longest = square;
-      first = static_cast<std::ptrdiff_t>(i);
-    }
-  }
-  std::rotate(turned.corner.begin(), turned.corner.begin() + first, turned.corner.end());
-  std::rotate(turned.neighbour.begin(), turned.neighbour.begin() + first, turned.neighbour.end());
-  return turned;
+  const auto [a, b, c] = facet.corner;
+  const auto [na, nb, nc] = facet.neighbour;
+  const double sa = square_of_edge(cloud, facet, 0), sb = square_of_edge(cloud, facet, 1), sc = square_of_edge(cloud, facet, 2);
+  // Of equal ones that of the first corner in (x, y), whatever the facet's order and the points' numbers.
+  const auto comes_first = [&](double square, std::uint32_t corner, double other_square, std::uint32_t other) {
+    if (square != other_square) return square > other_square;
+    const auto &p = cloud.points[corner], &q = cloud.points[other];
+    return p.x != q.x ? p.x < q.x : p.y < q.y;
+  };
+  const bool a_before_b = comes_first(sa, a, sb, b), b_before_c = comes_first(sb, b, sc, c), a_before_c = comes_first(sa, a, sc, c);
+  if (a_before_b && a_before_c) return facet;
+  if (b_before_c && !a_before_b) return {{b, c, a}, {nb, nc, na}};
+  return {{c, a, b}, {nc, na, nb}};
 }
 
-Trimmed trim(const PointCloud& cloud, std::vector<RawFacet> facets, double max_edge, const std::vector<char>& is_known) {
+Trimmed trim(const PointCloud& cloud, const std::vector<RawFacet>& facets, double max_edge, const std::vector<char>& is_known) {
   const auto is_outside = [&](std::size_t f) { return !is_known.empty() && !is_known[f]; };
   Trimmed trimmed;
-  std::vector<char> gone(facets.size(), false), seen(facets.size(), false);
+  std::vector<char>& gone = trimmed.gone;
+  gone.assign(facets.size(), false);
+  std::vector<char> seen(facets.size(), false);
   for (std::size_t f = 0; f < facets.size(); ++f) {
-    facets[f] = from_widest_corner(cloud, facets[f]);
-    const auto& corner = facets[f].corner;
-    const bool hole = std::any_of(corner.begin(), corner.end(), [&](std::uint32_t v) { return std::isnan(cloud.points[v].z); });
-    const bool long_edge = !hole && square_of_edge(cloud, facets[f], 0) > max_edge * max_edge;
+    const auto z = [&](std::size_t i) { return cloud.points[facets[f].corner[i]].z; };
+    const bool hole = std::isnan(z(0) + z(1) + z(2));
+    const auto is_long = [&](std::size_t i) { return square_of_edge(cloud, facets[f], i) > max_edge * max_edge; };
+    const bool long_edge = max_edge < infinity && !hole && (is_long(0) || is_long(1) || is_long(2));
     gone[f] = hole || long_edge || is_outside(f);
     trimmed.holes += hole;
     trimmed.long_edges += long_edge;
@@ -108,7 +107,7 @@ Trimmed trim(const PointCloud& cloud, std::vector<RawFacet> facets, double max_e
     return double{mean};
   };
   const auto is_sliver = [&](std::uint32_t f) {
-    const RawFacet& facet = facets[f];
+    const RawFacet facet = from_widest_corner(cloud, facets[f]);  // the same bits, whatever its order
     const auto& [v0, v1, v2] = facet.corner;
     const auto &p0 = cloud.points[v0], &p1 = cloud.points[v1], &p2 = cloud.points[v2];
     const double twice_area = (p1.x - p0.x) * (p2.y - p0.y) - (p2.x - p0.x) * (p1.y - p0.y);
@@ -128,18 +127,7 @@ Trimmed trim(const PointCloud& cloud, std::vector<RawFacet> facets, double max_e
     for (const std::uint32_t next : facets[f].neighbour) reach(next);
   }
 
-  std::vector<std::uint32_t> new_index(facets.size(), no_facet);
-  std::uint32_t count = 0;
-  for (std::size_t f = 0; f < facets.size(); ++f) {
-    if (!gone[f]) new_index[f] = count++;
-  }
-  for (std::size_t f = 0; f < facets.size(); ++f) {
-    if (gone[f]) continue;
-    for (std::uint32_t& next : facets[f].neighbour) next = next == no_facet ? no_facet : new_index[next];
-    facets[new_index[f]] = facets[f];
-  }
-  facets.resize(count);
-  trimmed.facets = std::move(facets);
+  trimmed.kept = static_cast<std::size_t>(std::count(gone.begin(), gone.end(), false));
   return trimmed;
 }
 

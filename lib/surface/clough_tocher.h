@@ -207,17 +207,18 @@ template <class T>
 }
 
 inline CloughTocherPatch CloughTocherPatch::of(const Corner (&corners)[3], const Facet& plane, const Slope (&at_midpoint)[3]) {
+  constexpr double third = 1.0 / 3;
   CloughTocherPatch p{};
   const auto &v0 = corners[0].vertex, &v1 = corners[1].vertex, &v2 = corners[2].vertex;
-  p.x = (v0.x + v1.x + v2.x) / 3;
-  p.y = (v0.y + v1.y + v2.y) / 3;
-  p.z = (v0.z + v1.z + v2.z) / 3;
-  const double area = (v1.x - v0.x) * (v2.y - v0.y) - (v1.y - v0.y) * (v2.x - v0.x);
-  p.m1_x = (v2.y - v0.y) / area, p.m1_y = (v0.x - v2.x) / area;
-  p.m2_x = (v0.y - v1.y) / area, p.m2_y = (v1.x - v0.x) / area;
+  p.x = (v0.x + v1.x + v2.x) * third;
+  p.y = (v0.y + v1.y + v2.y) * third;
+  p.z = (v0.z + v1.z + v2.z) * third;
+  const double per_area = 1 / ((v1.x - v0.x) * (v2.y - v0.y) - (v1.y - v0.y) * (v2.x - v0.x));
+  p.m1_x = (v2.y - v0.y) * per_area, p.m1_y = (v0.x - v2.x) * per_area;
+  p.m2_x = (v0.y - v1.y) * per_area, p.m2_y = (v1.x - v0.x) * per_area;
   const auto toward = [&](int from, int to) {  // (2)
     const Corner &a = corners[from], &b = corners[to];
-    return (a.slope.x * (b.vertex.x - a.vertex.x) + a.slope.y * (b.vertex.y - a.vertex.y) - (b.vertex.z - a.vertex.z)) / 3;
+    return (a.slope.x * (b.vertex.x - a.vertex.x) + a.slope.y * (b.vertex.y - a.vertex.y) - (b.vertex.z - a.vertex.z)) * third;
   };
   p.e01 = toward(0, 1), p.e12 = toward(1, 2), p.e20 = toward(2, 0);
   p.e10 = toward(1, 0), p.e21 = toward(2, 1), p.e02 = toward(0, 2);
@@ -229,9 +230,9 @@ inline CloughTocherPatch CloughTocherPatch::of(const Corner (&corners)[3], const
     const double gx = at_midpoint[k].x - plane.slope_x, gy = at_midpoint[k].y - plane.slope_y;
     const double excess = (0.75 * (e_ji - e_ij) - gx * ex - gy * ey) / (ex * ex + ey * ey);
     const double inward = (gx + excess * ex) * (p.x - (a.x + b.x) / 2) + (gy + excess * ey) * (p.y - (a.y + b.y) / 2);
-    return 2 * inward / 3 + 0.75 * (e_ij + e_ji) - (s_i + s_j) / 2;
+    return 2 * third * inward + 0.75 * (e_ij + e_ji) - (s_i + s_j) / 2;
   };
-  const double s0 = (p.e01 + p.e02) / 3, s1 = (p.e12 + p.e10) / 3, s2 = (p.e20 + p.e21) / 3;
+  const double s0 = (p.e01 + p.e02) * third, s1 = (p.e12 + p.e10) * third, s2 = (p.e20 + p.e21) * third;
   p.q0 = middle(0, p.e12, p.e21, s1, s2);
   p.q1 = middle(1, p.e20, p.e02, s2, s0);
   p.q2 = middle(2, p.e01, p.e10, s0, s1);

@@ -23,7 +23,7 @@ constexpr int ray_count = 100'000;
 // A layout's points on a sphere, with a hole in the middle.
 struct Surfaces {
   std::shared_ptr<const scene::MeshStorage> mesh;
-  std::vector<CloughTocherPatch> patches;
+  numerics::UnsetArray<CloughTocherPatch> patches;
 
   explicit Surfaces(const Layout& layout) {
     const auto height = [on_sphere = sphere(12)](double x, double y) {

@@ -23,7 +23,7 @@ using Real50 = boost::multiprecision::cpp_dec_float_50;
 // A mesh with its C1 patches.
 struct Smooth {
   std::shared_ptr<const scene::MeshStorage> mesh;
-  std::vector<CloughTocherPatch> patches;
+  numerics::UnsetArray<CloughTocherPatch> patches;
 
   explicit Smooth(const PointCloud& cloud) : mesh(scene::triangulate(cloud).mesh), patches(scene::fit_patches(mesh->mesh).patches) {}
   Facets facets() const { return {&mesh->mesh}; }
