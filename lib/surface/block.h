@@ -9,6 +9,8 @@
 
 #include <cstdint>
 
+#include "lib/surface/crossing.h"
+
 namespace sagitta::surface {
 
 inline constexpr int block_capacity = 256;
@@ -20,11 +22,19 @@ struct BlockOfLines {
   alignas(64) bool travels[block_capacity];                                    // the others are not to be met
 };
 
-// Path and point as in Crossing; the normal is (-slope_x, -slope_y, 1). Only where the status is ok.
+// Path and point as in Crossing, only where the status is ok; the normal is (-slope_x, -slope_y, 1), that of a crossing that is
+// put here too.
 struct BlockOfCrossings {
   alignas(64) double path[block_capacity], x[block_capacity], y[block_capacity], z[block_capacity];
   alignas(64) double slope_x[block_capacity], slope_y[block_capacity];
   alignas(64) std::int32_t status[block_capacity];
+
+  void put(int i, const Crossing<double>& crossing) {
+    path[i] = crossing.path;
+    x[i] = crossing.point.x, y[i] = crossing.point.y, z[i] = crossing.point.z;
+    slope_x[i] = -crossing.normal.x, slope_y[i] = -crossing.normal.y;
+    status[i] = static_cast<std::int32_t>(crossing.status);
+  }
 };
 
 }  // namespace sagitta::surface

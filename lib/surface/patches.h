@@ -49,14 +49,7 @@ struct Patches {
     for (int i = 0; i < lines.count; ++i) {
       if (settled[i] || flat.facet[i] == no_facet) continue;
       const Facets::Hit<double> hit{flat.facet[i], crossings.path[i], {crossings.x[i], crossings.y[i], crossings.z[i]}};
-      const Crossing<double> crossing = meet_across_patches(hit, Vec3<double>{lines.l[i], lines.m[i], lines.n[i]});
-      crossings.path[i] = crossing.path;
-      crossings.x[i] = crossing.point.x;
-      crossings.y[i] = crossing.point.y;
-      crossings.z[i] = crossing.point.z;
-      crossings.slope_x[i] = -crossing.normal.x;
-      crossings.slope_y[i] = -crossing.normal.y;
-      crossings.status[i] = static_cast<std::int32_t>(crossing.status);
+      crossings.put(i, meet_across_patches(hit, Vec3<double>{lines.l[i], lines.m[i], lines.n[i]}));
     }
   }
 

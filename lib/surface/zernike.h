@@ -12,9 +12,16 @@
 //   Z-sum = sum_m [ Re h_m  sum_k a_mk P_k + Im h_m  sum_k b_mk P_k ],   h_m = (X + iY)^m, X = x/r0, u = X^2 + Y^2     (2)
 //   d h_m/dX = m h_(m-1),   d h_m/dY = i m h_(m-1),   d P_k/du by the derivative of the recurrence.                   (3)
 // About 8 operations a term. Error of the sum: a few eps of sum |C_j|, times the order near the rim (tests: 1e-13 at
-// order 40).
+// order 40). Sums up to order 12 become one polynomial in X and Y when they are made: 2 operations a term.
+//
+// Intersection. From the conic's hit on, Newton's method on the implicit form, in which no root appears: with p the sum,
+//   g(t) = w - c/2 (x^2 + y^2 + (1+K) w^2) = 0,   w = z - p(x, y)                                                 (4)
+//   g' = G (d_z - p_x d_x - p_y d_y) - c (x d_x + y d_y),   G = 1 - (1+K) c w > 0 on the sheet of the vertex.
+// It ends when |g| is at its rounding, or with a step that moves (x, y) by less than rounding, so that p stays what it is, if
+// what g'' adds is below rounding too. Where it does not end at once, the iteration of departure.h takes over.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
@@ -23,7 +30,8 @@
 
 #include "lib/numerics/key.h"
 #include "lib/numerics/zernike_basis.h"
-#include "lib/surface/departure.h"
+#include "lib/numerics/zernike_polynomial.h"
+#include "lib/surface/departure_block.h"
 
 namespace sagitta::surface {
 
@@ -60,6 +68,8 @@ struct Zernike {
   const Group* groups = nullptr;
   int group_count = 0;
   const Row* rows = nullptr;
+  bool is_polynomial = false;  // then the sum is this one, in X and Y
+  numerics::Polynomial polynomial;
   double coefficient_sum = 0;  // sum |C_j norm_j|, the size of the terms inside r0
 
   template <class Parameters, class Arena>
@@ -67,6 +77,11 @@ struct Zernike {
     const auto indexing = numerics::zernike_indexing(given.text("indexing"));
     std::map<int, std::vector<Row>> by_order;
     Zernike result;
+    int order = -1;  // of the terms that are not zero
+    for (const auto& [index, micrometres] : given.list("coefficients_um"))
+      if (micrometres != 0) order = std::max(order, numerics::zernike_term(indexing, index).n);
+    result.is_polynomial = order <= numerics::highest_zernike_polynomial;
+    std::vector<long double> expanded(result.is_polynomial ? numerics::Polynomial::count(order) : 0);
     for (const auto& [index, micrometres] : given.list("coefficients_um")) {
       const numerics::ZernikeTerm term = numerics::zernike_term(indexing, index);
       const int m = std::abs(term.m);
@@ -78,6 +93,7 @@ struct Zernike {
       }
       const double scaled = micrometres * 1e-3 * numerics::zernike_norm(indexing, term);
       (term.m < 0 ? rows_of_m[k].sine : rows_of_m[k].cosine) += scaled;
+      if (result.is_polynomial && scaled != 0) numerics::add_zernike_term<long double>(term, scaled, order, expanded);
       result.coefficient_sum += std::abs(scaled);
     }
     std::vector<Group> all_groups;
@@ -91,14 +107,29 @@ struct Zernike {
     result.group_count = static_cast<int>(all_groups.size());
     result.groups = arena.keep(std::move(all_groups));
     result.rows = arena.keep(std::move(all_rows));
+    if (result.is_polynomial) result.polynomial = {order, arena.keep(std::vector<double>(expanded.begin(), expanded.end()))};
     return result;
   }
 
+  // The sum and its gradient along x and y, in mm and 1.
   template <class T>
-  Height<T> height(const T& x, const T& y) const {
-    using std::abs;
+  using Sum = numerics::Polynomial::WithGradient<T>;
+
+  template <class T>
+  [[gnu::always_inline]] Sum<T> sum_of_polynomial(const T& x, const T& y) const {
+    Sum<T> sum = polynomial.evaluate<T>(x * per_radius, y * per_radius);
+    sum.along_x = sum.along_x * per_radius;
+    sum.along_y = sum.along_y * per_radius;
+    return sum;
+  }
+  template <class T>
+  Sum<T> sum(const T& x, const T& y) const {
+    return is_polynomial ? sum_of_polynomial(x, y) : sum_by_recurrence(x, y);
+  }
+  template <class T>
+  Sum<T> sum_by_recurrence(const T& x, const T& y) const {
     const T X = x * T(per_radius), Y = y * T(per_radius), u = X * X + Y * Y;
-    T z(0), z_X(0), z_Y(0), size(coefficient_sum);
+    T z(0), z_X(0), z_Y(0);
     T re(1), im(0), re_before(0), im_before(0);  // h_m and h_(m-1)
     int m = 0;
     for (int g = 0; g < group_count; ++g) {
@@ -128,14 +159,19 @@ struct Zernike {
       }
       const T radial_u = re * cosine_u + im * sine_u;
       z += re * cosine + im * sine;                                                          // (2)
-      size += abs(re * cosine) + abs(im * sine);
       z_X += T(2) * X * radial_u + T(m) * (re_before * cosine + im_before * sine);           // (3)
       z_Y += T(2) * Y * radial_u + T(m) * (re_before * sine - im_before * cosine);
     }
+    return {z, z_X * T(per_radius), z_Y * T(per_radius)};
+  }
+
+  template <class T>
+  Height<T> height(const T& x, const T& y) const {
+    using std::abs;
+    const Sum<T> p = sum(x, y);
     const T base_z = base.sag(x, y);
     const Gradient<T> slope = base.gradient(x, y);
-    return {base_z + z, slope.x + z_X * T(per_radius), slope.y + z_Y * T(per_radius),
-            abs(base_z) + size};
+    return {base_z + p.value, slope.x + p.along_x, slope.y + p.along_y, abs(base_z) + abs(p.value) + T(coefficient_sum)};
   }
 
   template <class T>
@@ -149,7 +185,20 @@ struct Zernike {
   }
   template <class T>
   Crossing<T> meet(const Vec3<T>& p, const Vec3<T>& d) const {
-    return meet_departure(base, *this, p, d);
+    const Crossing<T> start = base.meet(p, d);
+    if (start.status != Status::ok) return start;
+    Approach<T> approach;
+    for (int look = 0; look < most_looks && approach.state == T(Approach<T>::going); ++look)
+      approach = look_at(start.point, d, approach, sum(start.point.x + approach.t * d.x, start.point.y + approach.t * d.y), look == 0);
+    if (approach.state != T(Approach<T>::arrived)) return meet_from(start.path, start.point, start.along > T(0), *this, d);
+    const Vec3<T> normal{-approach.slope_x, -approach.slope_y, T(1)};
+    return {start.path + approach.t, start.point + approach.t * d, normal, dot(normal, d), Status::ok};
+  }
+
+  [[gnu::always_inline]] void meet_block(const BlockOfLines& lines, BlockOfCrossings& crossings) const {
+    if (is_polynomial) return meet_departures(*this, lines, crossings);
+    for (int i = 0; i < lines.count; ++i)
+      if (lines.travels[i]) crossings.put(i, meet(Vec3<double>{lines.x[i], lines.y[i], lines.z[i]}, Vec3<double>{lines.l[i], lines.m[i], lines.n[i]}));
   }
 
   // c plus the y^2 terms of the sum: only m = 0 (u = Y^2: dP/du) and m = 2 cosine (Re h_2 = -Y^2) have them.
@@ -169,6 +218,42 @@ struct Zernike {
       }
     }
     return base.curvature + second * per_radius * per_radius;
+  }
+
+  // The iteration on (4): where the next look is; where the last one was, g there, and the slopes of the surface.
+  static constexpr int most_looks = 5;
+  template <class T>
+  struct Approach {
+    static constexpr double going = 0, arrived = 1, given_up = 2;
+    T t{}, old_t{}, g{}, slope_x{}, slope_y{}, state{};
+  };
+  // In select form, so that loops over it become vectors; what no longer goes on stays as it is.
+  template <class T>
+  [[gnu::always_inline]] Approach<T> look_at(const Vec3<T>& origin, const Vec3<T>& d, const Approach<T>& before, const Sum<T>& p,
+                                             bool is_first) const {
+    using std::abs;
+    const T eps = std::numeric_limits<T>::epsilon();
+    const T c(base.curvature), one_plus_K = T(1) + T(base.conic_constant), t = before.t;
+    const T x = origin.x + t * d.x, y = origin.y + t * d.y, z = origin.z + t * d.z, w = z - p.value;
+    const T G = T(1) - one_plus_K * c * w, per_G = T(1) / G;
+    const T g = w - T(0.5) * c * (x * x + y * y + one_plus_K * w * w);
+    const T n_x = c * x + G * p.along_x, n_y = c * y + G * p.along_y;
+    const T w_t = d.z - p.along_x * d.x - p.along_y * d.y;
+    const T along = G * w_t - c * (x * d.x + y * d.y), forward = d.z < T(0) ? -along : along;
+    const T step = -g / along, next = t + step;
+    const T scale = abs(origin.x) + abs(origin.y) + abs(origin.z) + abs(t);
+    const T bend = T(0.5) * abs(c) * (d.x * d.x + d.y * d.y + abs(one_plus_K) * w_t * w_t);  // the conic's part of -g''/2
+    const bool is_last = (abs(step) * (abs(d.x) + abs(d.y)) <= T(4) * eps * scale) & (bend * step * step <= eps * scale * abs(along));
+    const bool at_rounding = abs(g) <= eps * G * (abs(z) + abs(p.value) + T(coefficient_sum));
+    const bool ends = at_rounding | is_last;
+    const bool falls = is_first | (abs(g) < abs(before.g));
+    const bool in_bracket = is_first | (g * before.g > T(0)) | ((next - before.old_t) * (next - t) < T(0));
+    const bool sound = falls & (G > T(0)) & (forward > T(0));  // false for NaN
+    const bool goes = before.state == T(Approach<T>::going);
+    const T arrived(Approach<T>::arrived), given_up(Approach<T>::given_up), going(Approach<T>::going);
+    const T after_end = sound & ends ? arrived : given_up;
+    const T after = sound & !ends & in_bracket ? going : after_end;
+    return {goes & !at_rounding ? next : t, t, g, goes ? n_x * per_G : before.slope_x, goes ? n_y * per_G : before.slope_y, goes ? after : before.state};
   }
 };
 

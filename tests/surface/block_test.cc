@@ -7,9 +7,11 @@
 #include <bit>
 #include <memory>
 
+#include "lib/numerics/arena.h"
 #include "lib/scene/fit_patches.h"
 #include "lib/scene/triangulate.h"
 #include "lib/surface/patches.h"
+#include "lib/surface/zernike.h"
 #include "tests/support/point_sets.h"
 
 namespace sagitta::surface {
@@ -121,6 +123,38 @@ TEST(Blocks, HaveTheSameBitsAsLineByLine) {
       EXPECT_GT(counts.outside, ray_count / 50);
       EXPECT_GT(counts.waiting, ray_count / 20);
     }
+  }
+}
+
+// What Zernike::from asks of parameters.
+struct GivenZernike {
+  double radius, conic_constant;
+  std::vector<std::pair<int, double>> coefficients;
+  double number(std::string_view key) const { return key == "radius_mm" ? radius : key == "conic_constant" ? conic_constant : 3; }
+  const std::string& text(std::string_view) const {
+    static const std::string osa = "osa";
+    return osa;
+  }
+  const std::vector<std::pair<int, double>>& list(std::string_view) const { return coefficients; }
+};
+
+// On spheres, planes, hyperboloids; without a term, as polynomials, by the recurrence; mild ones and such that Newton's
+// method strays on. Rays come from all sides, so that many miss the conic.
+TEST(Blocks, HaveTheSameBitsAsLineByLineOnZernikeSurfaces) {
+  const auto given = [](double radius, double conic_constant, int term_count, double um) {
+    GivenZernike zernike{radius, conic_constant, {}};
+    for (int j = 0; j < term_count; ++j) zernike.coefficients.push_back({j, (j % 3 == 0 ? um : -um) / (1 + j)});
+    return zernike;
+  };
+  const std::vector<Ray> rays = rays_to(Surfaces(all_layouts(900).front()).mesh->mesh);
+  for (const GivenZernike& zernike : {given(12, 0, 0, 0), given(7.8, -0.26, 36, 5), given(INFINITY, 0, 91, 3), given(-9, -1, 120, 2),
+                                      given(5, -2.5, 66, 200), given(4, 3, 28, 1000)}) {
+    numerics::Arena arena;
+    const Zernike shape = Zernike::from(zernike, arena);
+    EXPECT_EQ(shape.is_polynomial, zernike.coefficients.size() <= 91);
+    const Counts counts = compare(shape, rays);
+    EXPECT_EQ(counts.different, 0) << zernike.radius;
+    EXPECT_GT(counts.hits, ray_count / 20) << zernike.radius;  // that of 4 mm ends at 2 mm from its axis
   }
 }
 

@@ -225,5 +225,31 @@ TEST(ZernikeSurface, a_line_that_passes_the_rim_of_the_base_conic_finds_no_hit) 
   EXPECT_GT(lost, 5000);
 }
 
+// The polynomial of a term against the recurrence, over the disc and a little beyond. Bound: the polynomial's terms at
+// |rho| = 1 add up to less than 2^14 times the highest coefficient up to order 12 (R_12^0: 8989; binomials of u^k included),
+// each with 2 N roundings.
+TEST(Polynomial, of_each_zernike_term_is_the_term) {
+  for (int index = 0; index < 91; ++index) {
+    const ZernikeTerm term = numerics::osa_term(index);
+    std::vector<long double> expanded(numerics::Polynomial::count(12));
+    numerics::add_zernike_term<long double>(term, 1.0L, 12, expanded);
+    const std::vector<double> coefficients(expanded.begin(), expanded.end());
+    const numerics::Polynomial polynomial{12, coefficients.data()};
+    for (const double x : {-0.7, 0.0, 0.31, 0.99})
+      for (const double y : {-0.71, 0.0, 0.13, 0.4}) {
+        const auto p = polynomial.evaluate<Real50>(x, y);
+        const auto of_term = [&](const Real50& at_x, const Real50& at_y) {
+          return Real50(numerics::zernike_value<Real50>(ZernikeIndexing::fringe, term, at_x, at_y));  // norm 1
+        };
+        // coefficients are whole numbers: in 50 digits only rounding of the recurrence's doubles is left
+        EXPECT_LE(abs(p.value - of_term(x, y)), 1e-13) << index;
+        const Real50 h = 1e-12;
+        EXPECT_LE(abs(p.along_x - (of_term(x + h, y) - of_term(x - h, y)) / (2 * h)), 1e-11) << index;
+        EXPECT_LE(abs(p.along_y - (of_term(x, y + h) - of_term(x, y - h)) / (2 * h)), 1e-11) << index;
+        EXPECT_LE(abs(polynomial.evaluate<double>(x, y).value - p.value), 0x1p14 * 24 * 0x1p-53) << index;
+      }
+  }
+}
+
 }  // namespace
 }  // namespace sagitta::surface
