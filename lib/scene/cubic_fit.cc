@@ -13,7 +13,7 @@ namespace {
 constexpr auto cubic_terms = static_cast<std::size_t>(CubicFit::cubic_terms);
 constexpr std::size_t height = cubic_terms;  // the column
 
-constexpr double most_amplified = 1e6;  // the right side of (3)
+constexpr double most_amplified = 1e3;  // the right side of (3)
 constexpr double smallest_square = 1e-290;
 
 // (1), from sums of X^2, XY and Y^2. Points that all lie on one line through V leave it zero, and nothing is determined.
