@@ -128,6 +128,16 @@ TEST(Triangulate, TakesTheMeanOfAllEdgesAtACorner) {
   EXPECT_EQ(kite(0.005496), 1u);
 }
 
+TEST(Triangulate, PeelsBehindFacetsThatAreGone) {
+  // A flat triangle, 0.0052 high, whose long side faces a point 200 away, and others above: its circumradius, 96, exceeds twice
+  // the mean of its corners' mean edges, 70, but it borders on the hull only if the long facet below is a hole.
+  const auto facets = [](double z) {
+    return triangulate(cloud_of_points({{-1, 0, 0}, {1, 0, 0}, {0, 0.0052, 0}, {-2, 2, 0}, {2, 2, 0}, {0, -200, z}})).mesh->facets.size();
+  };
+  EXPECT_EQ(facets(0), 5u);
+  EXPECT_EQ(facets(nan), 3u);
+}
+
 TEST(Triangulate, KeepsTheDiscInsideTheInnermostRing) {
   // freeform.md: a rule by spacing would remove the apex of ring data.
   const auto mesh = triangulate(cloud_of(polar_rings(24, 180, 5, false), sphere(8))).mesh;
