@@ -9,8 +9,8 @@
 // The matrix of its terms at the m points becomes Q D F by the modified Gram-Schmidt process, columns of Q orthogonal
 // with squares D^-1, F unit upper triangular; the heights are one more column, and c = F^-1 y. That is as stable as
 // Householder's process. The first k coefficients are determined where
-//   m sum_{i<=j<k} (F^-1)_ij^2 / D_j <= 1e3                                                                        (3)
-// so that none takes up more than 32 times the error of a mean of m heights: noise of the points stays of its size, on the
+//   sum_{i<=j<k} (F^-1)_ij^2 / D_j <= 64                                                                           (3)
+// so that none takes up more than 8 times the noise of a height: it stays of its size in the surface, on the
 // rim and between rings far apart too, where the points lie on one side or in few directions. F's leading blocks serve the
 // quadratic (5 terms) and the plane (2 terms), one of which takes the cubic's place where it is not determined.
 //

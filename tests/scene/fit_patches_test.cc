@@ -131,8 +131,8 @@ TEST(FitPatches, fall_back_to_what_the_points_determine) {
 
 // White noise of 1 um on rings 0.17 mm apart: the surface may not make much more of it, neither in the innermost and the
 // outermost gap nor on the outermost ring, where all points lie on one side. (2026-11-22: 5.9 um rms and 34 um at worst on the
-// outermost ring, since fits took up noise 1000 times.) By (3) of cubic_fit.h a slope is known to 32/sqrt(m) of the noise
-// over the spread of its points, which is at least 1.2 spacings, m at least 12: 8 of the noise a spacing; a patch's edge
+// outermost ring, since fits took up noise 1000 times.) By (3) of cubic_fit.h a slope is known to 8 of the noise
+// over the spread of its points, which is more than a spacing: 8 of the noise a spacing; a patch's edge
 // coefficient (2) is a third of that, weighted by 4/9 at most in a patch: with the vertices' own noise 2.2 at most, and 4.5
 // times that is passed once in a hundred thousand samples.
 TEST(FitPatches, keep_the_noise_of_rings_in_bounds_up_to_the_rim) {
@@ -178,6 +178,24 @@ TEST(FitPatches, tell_which_vertices_reach_the_rim) {
   EXPECT_EQ(inside, 35 * 35);
 }
 
+// Across a gap of 10, over 20 times a neighbour's distance of 0.3: one such neighbour is a stray point, two are a line, along
+// which all points within the longest edge count, as far as the rim, 8 away.
+TEST(FitPatches, reach_beyond_two_rings_where_points_crowd_along_a_line) {
+  std::vector<Place2> places;
+  for (int j = -8; j <= 8; ++j)
+    for (int i = -8; i <= 8; ++i) places.push_back({i <= 0 ? 1.0 * i : 9.0 + i, 1.0 * j});
+  const auto middle_reaches_rim = [&] {
+    const auto storage = triangulate(cloud_of(places, sphere(50))).mesh;
+    const auto middle = std::find(storage->vertices.begin(), storage->vertices.end(), V{0, 0, 0});
+    return fit_patches(storage->mesh).reaches_rim.at(static_cast<std::size_t>(middle - storage->vertices.begin()));
+  };
+  EXPECT_FALSE(middle_reaches_rim());
+  places.push_back({0, 0.3});
+  EXPECT_FALSE(middle_reaches_rim());
+  places.push_back({0, -0.3});
+  EXPECT_TRUE(middle_reaches_rim());
+}
+
 // A patch away from the rim knows nothing of what lies further: other heights there change no bit of it.
 TEST(FitPatches, away_from_the_rim_depend_on_two_rings_alone) {
   auto cloud = cloud_of(regular_grid(41, 41, 20, 20), sphere(50));
@@ -214,7 +232,9 @@ TEST(CubicFits, lanes_do_not_meet) {
   together.put(1, {}, few.data(), std::span(numbers).first(20));
   EXPECT_EQ(together.solve()[1].c, expected.c);
   together.put(0, {}, few.data(), std::span(numbers).first(20));
-  EXPECT_EQ(together.solve()[0].c, expected.c);
+  const auto last = together.solve();
+  EXPECT_EQ(last[0].c, expected.c);
+  EXPECT_EQ(last[1].terms, 0);  // nothing was put there since
 }
 
 // (3) by hand: on a line nothing is determined; five points determine no cubic; on a circle around V
