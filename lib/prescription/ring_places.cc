@@ -85,7 +85,8 @@ std::vector<double> places_of(const std::vector<RingSample>& samples) {
       const double outer = is_bounded ? samples[meridian[k]].radius : std::numeric_limits<double>::infinity();
       for (std::size_t missing = first; missing < k; ++missing) {
         double& r = placed[meridian[missing]];
-        if (std::isnan(r) || (r > inner && r < outer)) continue;
+        // A ring missing all around is a hole between two others; inside the first it is none, as no apex is.
+        if (std::isnan(r) ? inner == 0 : r > inner && r < outer) continue;
         const double share = static_cast<double>(missing - first + 1) / static_cast<double>(k - first + 1);
         r = is_bounded ? inner + (outer - inner) * share : std::numeric_limits<double>::quiet_NaN();
       }

@@ -9,6 +9,7 @@
 
 #include "lib/scene/cloud_fit.h"
 #include "lib/scene/compile_cloud.h"
+#include "lib/scene/triangulate.h"
 
 namespace sagitta::scene {
 namespace {
@@ -132,6 +133,17 @@ void set_vertex_curvatures(const Model& model, const Clouds& clouds, Scene& scen
   set([&](int number) { return marginal_height(before, before.primary, paraxial.entrance_pupil, number); });
 }
 
+// Where a cloud says nothing of its vertex. (Of clouds that wait for the beam, what their points span.)
+void tell_of_vertices_without_points(const Model& model, const std::vector<int>& waiting, Scene& scene, Findings& findings) {
+  for (std::size_t i = 0; i < scene.surfaces.size(); ++i) {
+    const prescription::Shape& given = model.surfaces[i].shape;
+    if (!given.cloud) continue;
+    const bool is_waiting = std::find(waiting.begin(), waiting.end(), static_cast<int>(i) + 1) != waiting.end();
+    if (is_waiting ? extent_of(*given.cloud).places.contains(0, 0) : facets_of(scene.surfaces[i].shape)->covers(0, 0)) continue;
+    findings.note(given.place, "(0, 0) is in a hole or beyond the points: focal lengths and pupils rest on a vertex extrapolated from them");
+  }
+}
+
 // The surfaces whose points the beam may need in part only, made in the order of the light: each from the lines that come
 // to it through those before.
 void compile_what_is_needed(const Model& model, const Beam& beam, const std::vector<int>& numbers, CompileResult& result, Scene& scene) {
@@ -193,6 +205,7 @@ CompileResult compile_for(const Model& model, const Beam& beam) {
       findings.error(model.surfaces[i].shape.place, "the surface has no curvature at its vertex, so the system has no first order",
                      "the radius is too small for a number, or too few points lie around (0, 0)");
   if (findings.has_errors()) return result;
+  tell_of_vertices_without_points(model, waiting, scene, findings);
   scene.pupil = compile_pupil(model, scene, first_order(scene, scene.primary, 1), findings);
   result.first_order = first_order(scene, scene.primary,
                                    scene.pupil.telecentric ? std::numeric_limits<double>::quiet_NaN() : scene.pupil.semi_diameter);

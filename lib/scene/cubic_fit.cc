@@ -13,7 +13,7 @@ namespace {
 constexpr auto cubic_terms = static_cast<std::size_t>(CubicFit::cubic_terms);
 constexpr std::size_t height = cubic_terms;  // the column
 
-constexpr double most_amplified = 1e6;  // the right side of (3)
+constexpr double most_amplified = 64;  // the right side of (3)
 constexpr double smallest_square = 1e-290;
 
 // (1), from sums of X^2, XY and Y^2. Points that all lie on one line through V leave it zero, and nothing is determined.
@@ -111,7 +111,7 @@ template <std::size_t k>
     const int terms = static_cast<int>(j) + 1;
     if (terms != CubicFit::plane_terms && terms != CubicFit::quadratic_terms && terms != CubicFit::cubic_terms) continue;
     for (std::size_t lane = 0; lane < lanes; ++lane) {
-      if (!(count[lane] * amplified[lane] <= most_amplified)) continue;
+      if (!(amplified[lane] <= most_amplified)) continue;
       fits[lane].terms = terms;
       for (std::size_t i = 0; i <= j; ++i) fits[lane].c[i] = c[i][lane];
     }

@@ -9,9 +9,10 @@
 // The matrix of its terms at the m points becomes Q D F by the modified Gram-Schmidt process, columns of Q orthogonal
 // with squares D^-1, F unit upper triangular; the heights are one more column, and c = F^-1 y. That is as stable as
 // Householder's process. The first k coefficients are determined where
-//   m sum_{i<=j<k} (F^-1)_ij^2 / D_j <= 1e6                                                                        (3)
-// so that none takes up more than 1000 times the error of a mean of m heights. F's leading blocks serve the quadratic
-// (5 terms) and the plane (2 terms), one of which takes the cubic's place where it is not determined.
+//   sum_{i<=j<k} (F^-1)_ij^2 / D_j <= 64                                                                           (3)
+// so that none takes up more than 8 times the noise of a height: it stays of its size in the surface, on the
+// rim and between rings far apart too, where the points lie on one side or in few directions. F's leading blocks serve the
+// quadratic (5 terms) and the plane (2 terms), one of which takes the cubic's place where it is not determined.
 //
 // Source: A. Bjorck, BIT 7, 1 (1967): least squares by the modified Gram-Schmidt process.
 #pragma once

@@ -200,7 +200,7 @@ template <class T>
   const auto at_end = [&](const T& ll, const T& lv, const T& vv) __attribute__((always_inline)) { return ll + t * (T(2) * lv + t * vv); };
   const Gradient<T> g = gradient(third, Local<T>{at_end(by_ll.i, by_lv.i, by_vv.i), at_end(by_ll.j, by_lv.j, by_vv.j), at_end(by_ll.c, by_lv.c, by_vv.c)});
   const T dz_dx = plane_x + g.x, dz_dy = plane_y + g.y;
-  const T crossing = d.z - dz_dx * d.x - dz_dy * d.y, forward = d.z > T(0) ? crossing : -crossing;
+  const T crossing = d.z - dz_dx * d.x - dz_dy * d.y, forward = d.z < T(0) ? -crossing : crossing;
   const T rounding = T(4) * std::numeric_limits<T>::epsilon() * (abs(along * t) + abs(f0)), slack(-patch_slack);
   const bool is_sound = (abs(f(t)) <= rounding) & (end.i >= slack) & (end.j >= slack) & (end.c >= slack) & (forward > T(0));
   return {t, dz_dx, dz_dy, is_sound};

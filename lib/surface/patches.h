@@ -69,7 +69,7 @@ struct Patches {
   template <class T>
   Crossing<T> meet_across_patches(const Facets::Hit<T>& flat, const Vec3<T>& d) const {
     Walker<T> walker{*this, flat.facet};
-    const Crossing<T> crossing = meet_from(flat.path, flat.point, d.z > T(0), walker, d);
+    const Crossing<T> crossing = meet_from(flat.path, flat.point, !(d.z < T(0)), walker, d);
     if (crossing.status != Status::ok) return crossing;
     walker.go_to(crossing.point.x, crossing.point.y);
     return walker.beyond_rim ? no_crossing<T>(Status::outside_data) : crossing;

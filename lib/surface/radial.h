@@ -109,7 +109,7 @@ struct RadialPatches {
     constexpr int most_facets = 32;  // from the flat hit the smooth one is a fraction of a facet away
     std::uint32_t facet = flat.facet, before = no_facet;
     for (int step = 0; step < most_facets; ++step) {
-      const Crossing<T> crossing = meet_from(flat.path, flat.point, d.z > T(0), OneFacet{*this, facet}, d);
+      const Crossing<T> crossing = meet_from(flat.path, flat.point, !(d.z < T(0)), OneFacet{*this, facet}, d);
       if (crossing.status != Status::ok) return crossing;
       const std::uint32_t next = facets.next_toward(facet, crossing.point.x, crossing.point.y);
       if (next == facet || next == before) return crossing;  // on the facet, or in the gap between two

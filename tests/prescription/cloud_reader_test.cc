@@ -186,7 +186,17 @@ TEST(Cso, MarksMissingSamplesAsHolesOnTheirMeridian) {
   for (const int hole : {0, 2, 4, 5, 7}) EXPECT_TRUE(std::isnan(p[static_cast<std::size_t>(hole)].z)) << hole;
   EXPECT_EQ(p[4].x, -4);
   EXPECT_EQ(p[7].y, -4);
-  // A ring without any sample leaves nothing.
+  // A ring between two others without any sample is a hole on each meridian (2026-11-22: it left nothing, and rays through it
+  // were ok): here at 2 between 1 and 3.
+  const std::string all_gone = "-1\r\n-1\r\n-1\r\n-1\r\n";
+  const Read between = read(cso("1\r\n1\r\n1\r\n1\r\n" + all_gone + "3\r\n3\r\n3\r\n3\r\n",
+                                "0\r\n0\r\n0\r\n0\r\n" + all_gone + "-0,5\r\n-0,5\r\n-0,5\r\n-0,5\r\n",
+                                "N\xB0 Anelli : 3\r\nN\xB0 Semimeridiani : 4\r\n"),
+                            "cso");
+  ASSERT_EQ(between.cloud->points.size(), 12u);
+  EXPECT_EQ(between.cloud->points[4].x, -2);
+  EXPECT_TRUE(std::isnan(between.cloud->points[4].z));
+  // The innermost ring, where it has no sample at all, leaves nothing.
   const Read ring = read(cso("-1\r\n-1\r\n-1\r\n-1\r\n2\r\n3\r\n4\r\n5\r\n", "-1\r\n-1\r\n-1\r\n-1\r\n-0,5\r\n-0,6\r\n-0,7\r\n-0,8\r\n"), "cso");
   EXPECT_EQ(ring.cloud->points.size(), 4u);
   EXPECT_EQ(ring.cloud->lines[0], 21u);

@@ -4,10 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <numbers>
 #include <numeric>
 
 #include "lib/scene/cubic_fit.h"
+#include "lib/surface/patches.h"
 #include "tests/support/point_sets.h"
 
 namespace sagitta::scene {
@@ -96,7 +99,7 @@ TEST(FitPatches, are_exact_for_cubics_on_every_layout) {
         ASSERT_NEAR(sheet.dz_dy, -0.2 + 0.01 * p.x + 0.14 * p.y - 0.002 * p.x * p.x + 0.008 * p.x * p.y - 0.003 * p.y * p.y, 1e-10)
             << layout.name << ' ' << turn;
       }
-      EXPECT_GT(compared, 800) << layout.name;  // stretched 30 times, neighbourhoods are wide and reach the rim
+      EXPECT_GT(compared, 700) << layout.name;  // stretched 30 times, neighbourhoods are wide and reach the rim
     }
   }
 }
@@ -126,6 +129,41 @@ TEST(FitPatches, fall_back_to_what_the_points_determine) {
   check(uniform_random(3, 1, 3), plane);
 }
 
+// White noise of 1 um on rings 0.17 mm apart: the surface may not make much more of it, neither in the innermost and the
+// outermost gap nor on the outermost ring, where all points lie on one side. (2026-11-22: 5.9 um rms and 34 um at worst on the
+// outermost ring, since fits took up noise 1000 times.) By (3) of cubic_fit.h a slope is known to 8 of the noise
+// over the spread of its points, which is more than a spacing: 8 of the noise a spacing; a patch's edge
+// coefficient (2) is a third of that, weighted by 4/9 at most in a patch: with the vertices' own noise 2.2 at most, and 4.5
+// times that is passed once in a hundred thousand samples.
+TEST(FitPatches, keep_the_noise_of_rings_in_bounds_up_to_the_rim) {
+  for (const int meridians : {64, 256}) {
+    const auto places = polar_rings(24, meridians, 24 * 0.17, false);
+    Uniform u(5);
+    const auto normal = [&] { return std::sqrt(-2 * std::log(1 - u())) * std::cos(2 * std::numbers::pi * u()); };
+    const auto clean = triangulate(cloud_of(places, sphere(7.8))).mesh;
+    auto cloud = cloud_of(places, sphere(7.8));
+    for (auto& p : cloud.points) p.z += 1e-3 * normal();
+    const auto noisy = triangulate(cloud).mesh;
+    const auto of_clean = fit_patches(clean->mesh).patches, of_noisy = fit_patches(noisy->mesh).patches;
+    const surface::Patches one{{&clean->mesh}, of_clean.data()}, other{{&noisy->mesh}, of_noisy.data()};
+    for (double r = 0.02; r < 24 * 0.17; r += 0.085) {
+      double squares = 0, most = 0;
+      int count = 0;
+      for (int i = 0; i < 500; ++i) {
+        const double angle = u(0, 2 * std::numbers::pi), x = r * std::cos(angle), y = r * std::sin(angle);
+        if (!one.facets.covers(x, y)) continue;
+        const double difference = 1e3 * (other.sag(x, y) - one.sag(x, y));
+        squares += difference * difference;
+        most = std::max(most, std::abs(difference));
+        ++count;
+      }
+      ASSERT_GT(count, 20) << r;
+      EXPECT_LE(std::sqrt(squares / count), 2.2) << meridians << " meridians, r " << r;
+      EXPECT_LE(most, 10) << meridians << " meridians, r " << r;
+    }
+  }
+}
+
 // A vertex says that its neighbourhood reaches the rim exactly when a vertex of its two rings lies there: on a regular
 // grid, one of the first or last three rows or columns.
 TEST(FitPatches, tell_which_vertices_reach_the_rim) {
@@ -138,6 +176,24 @@ TEST(FitPatches, tell_which_vertices_reach_the_rim) {
     inside += !fit.reaches_rim[v];
   }
   EXPECT_EQ(inside, 35 * 35);
+}
+
+// Across a gap of 10, over 20 times a neighbour's distance of 0.3: one such neighbour is a stray point, two are a line, along
+// which all points within the longest edge count, as far as the rim, 8 away.
+TEST(FitPatches, reach_beyond_two_rings_where_points_crowd_along_a_line) {
+  std::vector<Place2> places;
+  for (int j = -8; j <= 8; ++j)
+    for (int i = -8; i <= 8; ++i) places.push_back({i <= 0 ? 1.0 * i : 9.0 + i, 1.0 * j});
+  const auto middle_reaches_rim = [&] {
+    const auto storage = triangulate(cloud_of(places, sphere(50))).mesh;
+    const auto middle = std::find(storage->vertices.begin(), storage->vertices.end(), V{0, 0, 0});
+    return fit_patches(storage->mesh).reaches_rim.at(static_cast<std::size_t>(middle - storage->vertices.begin()));
+  };
+  EXPECT_FALSE(middle_reaches_rim());
+  places.push_back({0, 0.3});
+  EXPECT_FALSE(middle_reaches_rim());
+  places.push_back({0, -0.3});
+  EXPECT_TRUE(middle_reaches_rim());
 }
 
 // A patch away from the rim knows nothing of what lies further: other heights there change no bit of it.
@@ -167,16 +223,18 @@ TEST(CubicFits, lanes_do_not_meet) {
   };
   std::vector<std::uint32_t> numbers(40);
   std::iota(numbers.begin(), numbers.end(), 0u);
-  const auto few = points_of(12, 1), many = points_of(40, 2);
+  const auto few = points_of(20, 1), many = points_of(40, 2);
   CubicFits alone, together;
-  alone.put(0, {}, few.data(), std::span(numbers).first(12));
+  alone.put(0, {}, few.data(), std::span(numbers).first(20));
   const CubicFit expected = alone.solve()[0];
   EXPECT_EQ(expected.terms, CubicFit::cubic_terms);
   together.put(0, {}, many.data(), numbers);
-  together.put(1, {}, few.data(), std::span(numbers).first(12));
+  together.put(1, {}, few.data(), std::span(numbers).first(20));
   EXPECT_EQ(together.solve()[1].c, expected.c);
-  together.put(0, {}, few.data(), std::span(numbers).first(12));
-  EXPECT_EQ(together.solve()[0].c, expected.c);
+  together.put(0, {}, few.data(), std::span(numbers).first(20));
+  const auto last = together.solve();
+  EXPECT_EQ(last[0].c, expected.c);
+  EXPECT_EQ(last[1].terms, 0);  // nothing was put there since
 }
 
 // (3) by hand: on a line nothing is determined; five points determine no cubic; on a circle around V

@@ -262,9 +262,9 @@ TEST(Smoothing, brings_back_the_synthetic_corneas) {
     const Errors before = errors_of(smoothed(*measured, 0).triangulation, sag, 2.5), after = errors_of(smoothed(*measured, rms).triangulation, sag, 2.5);
     std::printf("[ report   ] %s: noise %.3f um rms; sag error %.4f -> %.4f um rms, slope error %.4f -> %.4f mrad rms\n", name.c_str(), 1e3 * rms, 1e3 * before.sag,
                 1e3 * after.sag, 1e3 * before.slope, 1e3 * after.slope);
-    // (The patches themselves average where points stand dense along a ring.)
-    EXPECT_LT(3 * after.sag, before.sag) << name;
-    EXPECT_LT(20 * after.slope, before.slope) << name;
+    // Against the noise itself, and the slope that it has over 0.1 mm, not against what c1 makes of it: that averages too.
+    EXPECT_LT(3.3 * after.sag, rms) << name;
+    EXPECT_LT(3.3 * after.slope, rms / 0.1) << name;
   }
 }
 

@@ -83,6 +83,7 @@ TEST(Triangulate, LeavesOutFacetsAroundAHoleAndNoMore) {
     around += std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return whole->vertices[v] == V{0, 0, 0}; });
   }
   EXPECT_EQ(holed->facets.size(), 200 - around);
+  EXPECT_EQ(holed->vertices.size(), 120u);  // and no place without a facet
   const Facets facets{&holed->mesh};
   EXPECT_FALSE(facets.covers(0.1, 0.1));
   EXPECT_EQ(facets.meet(V{0.1, 0.1, -3}, V{0, 0, 1}).status, Status::outside_data);
@@ -126,6 +127,16 @@ TEST(Triangulate, TakesTheMeanOfAllEdgesAtACorner) {
   const auto kite = [](double t) { return triangulate(cloud_of_points({{-1, 0, 0}, {1, 0, 0}, {0, t, 0}, {0, -200, 0}})).mesh->facets.size(); };
   EXPECT_EQ(kite(0.005507), 2u);
   EXPECT_EQ(kite(0.005496), 1u);
+}
+
+TEST(Triangulate, PeelsBehindFacetsThatAreGone) {
+  // A flat triangle, 0.0052 high, whose long side faces a point 200 away, and others above: its circumradius, 96, exceeds twice
+  // the mean of its corners' mean edges, 70, but it borders on the hull only if the long facet below is a hole.
+  const auto facets = [](double z) {
+    return triangulate(cloud_of_points({{-1, 0, 0}, {1, 0, 0}, {0, 0.0052, 0}, {-2, 2, 0}, {2, 2, 0}, {0, -200, z}})).mesh->facets.size();
+  };
+  EXPECT_EQ(facets(0), 5u);
+  EXPECT_EQ(facets(nan), 3u);
 }
 
 TEST(Triangulate, KeepsTheDiscInsideTheInnermostRing) {
@@ -250,6 +261,44 @@ TEST(Triangulate, MakesSoundMeshesOfEveryLayout) {
     SCOPED_TRACE(layout.name);
     expect_sound(*triangulate(cloud_of(layout.places, sphere(9))).mesh);
   }
+}
+
+// Every cell against every facet, in long double. A middle nearer to an edge than rounding may go to either side: coordinates
+// are known to a few 2^-52 of the grid's size, 10 mm, four times over.
+TEST(Triangulate, GivesEveryCellTheFacetAtItsMiddle) {
+  constexpr long double rounding = 1e-14L;  // mm
+  const auto height = [](double x, double y) { return x * x + y * y < 0.5 ? nan : sphere(12)(x, y); };
+  std::vector<Layout> layouts = all_layouts(900);
+  layouts.push_back({"few", uniform_random(20, 5, 3)});  // facets of many sizes: rows of many cells
+  layouts.push_back({"comet", {}});
+  for (int i = 1; i < 600; ++i) layouts.back().places.push_back({5 * std::pow(i / 600.0, 4) * std::cos(2.4 * i), 5 * std::pow(i / 600.0, 4) * std::sin(2.4 * i)});
+  int filled = 0, empty = 0;
+  for (const Layout& layout : layouts) {
+    const auto storage = triangulate(cloud_of(layout.places, height)).mesh;
+    const surface::Mesh& mesh = storage->mesh;
+    for (std::int32_t cell = 0; cell < mesh.grid.columns * mesh.grid.rows; ++cell) {
+      const long double x = mesh.centre.x + mesh.grid.low_x + (cell % mesh.grid.columns + 0.5L) / mesh.grid.columns_per_mm,
+                        y = mesh.centre.y + mesh.grid.low_y + (cell / mesh.grid.columns + 0.5L) / mesh.grid.rows_per_mm;
+      const auto inside_by = [&](std::uint32_t f) {  // mm, from the nearest edge
+        long double least = std::numeric_limits<long double>::infinity();
+        for (std::size_t i = 0; i < 3; ++i) {
+          const V &from = mesh.vertices[mesh.corners[f][i]], &to = mesh.vertices[mesh.corners[f][(i + 1) % 3]];
+          const long double dx = to.x - from.x, dy = to.y - from.y;
+          least = std::min(least, (dx * (y - from.y) - dy * (x - from.x)) / std::hypot(dx, dy));
+        }
+        return least;
+      };
+      const std::uint32_t here = mesh.grid.facets[cell];
+      ++(here == surface::no_facet ? empty : filled);
+      if (here != surface::no_facet) {
+        ASSERT_GE(inside_by(here), -rounding) << layout.name << ' ' << cell;
+        continue;
+      }
+      for (std::uint32_t f = 0; f < mesh.facet_count; ++f) ASSERT_LE(inside_by(f), rounding) << layout.name << ' ' << cell;
+    }
+  }
+  EXPECT_GT(filled, 30000);
+  EXPECT_GT(empty, 3000);
 }
 
 TEST(Triangulate, KeepsTheGridSmallForThinFacetsAcrossIt) {

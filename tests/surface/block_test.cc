@@ -64,12 +64,13 @@ std::vector<Ray> rays_to(const Mesh& mesh) {
   return rays;
 }
 
-// take(lines, the first one's number), block by block; the last one is not full.
+// take(lines, the first one's number), block by block, of all sizes up to the full one.
 template <class Take>
 void for_each_block(const std::vector<Ray>& rays, const Take& take) {
   const auto lines = std::make_unique<BlockOfLines>();
-  for (std::size_t from = 0; from < rays.size(); from += block_capacity) {
-    lines->count = static_cast<int>(std::min<std::size_t>(block_capacity, rays.size() - from));
+  std::size_t size = block_capacity;
+  for (std::size_t from = 0; from < rays.size(); from += static_cast<std::size_t>(lines->count), size = size == 1 ? block_capacity : size - 1) {
+    lines->count = static_cast<int>(std::min(size, rays.size() - from));
     for (int i = 0; i < lines->count; ++i) {
       const Ray& ray = rays[from + static_cast<std::size_t>(i)];
       lines->x[i] = ray.start.x, lines->y[i] = ray.start.y, lines->z[i] = ray.start.z;
