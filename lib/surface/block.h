@@ -4,7 +4,8 @@
 //
 //   void meet_block(const BlockOfLines& lines, BlockOfCrossings& crossings) const;
 //
-// with the same bits as meet() for every line that travels.
+// with the same bits as meet() for every line that travels. It may be a template of the number of doubles that the
+// processor's vectors hold (a shape that is written in vectors); the others become vectors by the compiler.
 #pragma once
 
 #include <cstdint>

@@ -2,6 +2,7 @@
 // Where the lines of a block meet a surface that departs from a base conic by a polynomial: the surface's own iteration
 // (look_at), for many lines at once. Lines that it does not settle are met one by one.
 //
+// The polynomial is evaluated for `at_once` lines, as many as the processor's vectors hold: more would not stay in vectors.
 // The surface has, besides meet(), whose bits these are,
 //   Conic base;   Sum<T> sum_of_polynomial(x, y);   Approach<T> look_at(origin, d, approach, sum, is_first);   most_looks
 #pragma once
@@ -13,11 +14,9 @@
 
 namespace sagitta::surface {
 
-template <class Surface>
+template <int at_once, class Surface>
 [[gnu::always_inline]] inline void meet_departures(const Surface& surface, const BlockOfLines& lines, BlockOfCrossings& crossings) {
-  // A portion's columns stay in the fastest memory. The polynomial is evaluated in vectors of eight, whatever the processor
-  // has: it makes several of one.
-  constexpr int portion = 64, at_once = 8;
+  constexpr int portion = 64;  // whose columns stay in the fastest memory
   using Several [[gnu::vector_size(at_once * sizeof(double))]] = double;
   struct {
     alignas(64) double path[portion]{}, x[portion]{}, y[portion]{}, z[portion]{}, t[portion]{}, old_t[portion]{}, g[portion]{}, state[portion]{};

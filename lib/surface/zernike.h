@@ -195,8 +195,9 @@ struct Zernike {
     return {start.path + approach.t, start.point + approach.t * d, normal, dot(normal, d), Status::ok};
   }
 
+  template <int doubles_in_vector = 2>
   [[gnu::always_inline]] void meet_block(const BlockOfLines& lines, BlockOfCrossings& crossings) const {
-    if (is_polynomial) return meet_departures(*this, lines, crossings);
+    if (is_polynomial) return meet_departures<doubles_in_vector>(*this, lines, crossings);
     for (int i = 0; i < lines.count; ++i)
       if (lines.travels[i]) crossings.put(i, meet(Vec3<double>{lines.x[i], lines.y[i], lines.z[i]}, Vec3<double>{lines.l[i], lines.m[i], lines.n[i]}));
   }

@@ -52,7 +52,7 @@ template <class Shape>
     return shape.meet(start, d);
 }
 
-template <bool centred, class Shape>
+template <bool centred, int doubles_in_vector, class Shape>
 [[gnu::always_inline]] inline void meet_block(const Shape& shape, const Setting& setting, const RayColumns& rays,
                                               const int ray_count, surface::BlockOfCrossings& crossings) {
   surface::BlockOfLines lines;
@@ -65,7 +65,10 @@ template <bool centred, class Shape>
     lines.l[i] = d.x, lines.m[i] = d.y, lines.n[i] = d.z;
   }
   for (int i = 0; i < ray_count; ++i) lines.travels[i] = rays.ended[i] == 0;
-  shape.meet_block(lines, crossings);
+  if constexpr (requires { shape.template meet_block<doubles_in_vector>(lines, crossings); })
+    shape.template meet_block<doubles_in_vector>(lines, crossings);
+  else
+    shape.meet_block(lines, crossings);
 }
 
 template <bool centred, Deflection deflection, class Shape>
@@ -108,13 +111,13 @@ template <bool centred, Deflection deflection, class Shape>
 // The same body for each instruction set. Without contraction all give the same bits. A function that the compiler did
 // not draw in is an ordinary one for every machine, so nothing can trap.
 template <bool centred, Deflection deflection, class Shape>
-void advance_for_any(const Shape shape, const Setting setting, const RayColumns rays, const int ray_count) {
+[[gnu::noinline]] void advance_for_any(const Shape shape, const Setting setting, const RayColumns rays, const int ray_count) {
   advance_block<centred, deflection>(shape, setting, rays, ray_count);
 }
 template <bool centred, class Shape>
-void meet_for_any(const Shape shape, const Setting setting, const RayColumns rays, const int ray_count,
+[[gnu::noinline]] void meet_for_any(const Shape shape, const Setting setting, const RayColumns rays, const int ray_count,
                   surface::BlockOfCrossings& crossings) {
-  meet_block<centred>(shape, setting, rays, ray_count, crossings);
+  meet_block<centred, 2>(shape, setting, rays, ray_count, crossings);
 }
 #if defined(__x86_64__)
 template <bool centred, Deflection deflection, class Shape>
@@ -130,12 +133,12 @@ template <bool centred, Deflection deflection, class Shape>
 template <bool centred, class Shape>
 [[gnu::target("arch=x86-64-v3")]] void meet_for_v3(const Shape shape, const Setting setting, const RayColumns rays,
                                                    const int ray_count, surface::BlockOfCrossings& crossings) {
-  meet_block<centred>(shape, setting, rays, ray_count, crossings);
+  meet_block<centred, 4>(shape, setting, rays, ray_count, crossings);
 }
 template <bool centred, class Shape>
 [[gnu::target("arch=x86-64-v4")]] void meet_for_v4(const Shape shape, const Setting setting, const RayColumns rays,
                                                    const int ray_count, surface::BlockOfCrossings& crossings) {
-  meet_block<centred>(shape, setting, rays, ray_count, crossings);
+  meet_block<centred, 8>(shape, setting, rays, ray_count, crossings);
 }
 #endif
 
