@@ -95,10 +95,16 @@ Facet facet_between(const Vec3<double>& v0, const Vec3<double>& v1, const Vec3<d
   return facet;
 }
 
-void make_facets(const PointCloud& places, const std::vector<RawFacet>& raw, const std::vector<std::uint32_t>& order,
+bool is_cliff(const Facet& facet) {  // or has no slope
+  return !(std::abs(facet.slope_x) <= steepest_slope && std::abs(facet.slope_y) <= steepest_slope);
+}
+
+// Returns whether there is a cliff among them.
+bool make_facets(const PointCloud& places, const std::vector<RawFacet>& raw, const std::vector<std::uint32_t>& order,
                  const std::vector<std::uint32_t>& vertex_of, MeshStorage& storage) {
   std::vector<std::uint32_t> new_index(raw.size(), no_facet);
   for (std::uint32_t k = 0; k < order.size(); ++k) new_index[order[k]] = k;
+  bool has_cliff = false;
   storage.corners.reserve(order.size());
   storage.facets.reserve(order.size());
   for (std::size_t k = 0; k < order.size(); ++k) {
@@ -109,15 +115,16 @@ void make_facets(const PointCloud& places, const std::vector<RawFacet>& raw, con
     Facet& facet = storage.facets.emplace_back(facet_between(storage.vertices[corners[0]], storage.vertices[corners[1]],
                                                              storage.vertices[corners[2]], storage.mesh));
     for (std::size_t i = 0; i < 3; ++i) facet.neighbour[i] = turned.neighbour[i] == no_facet ? no_facet : new_index[turned.neighbour[i]];
+    has_cliff |= is_cliff(facet);
   }
+  return has_cliff;
 }
 
 void refuse_cliffs(const PointCloud& cloud, const std::vector<RawFacet>& facets, const std::vector<std::uint32_t>& order,
                    const MeshStorage& mesh, prescription::Findings& findings) {
   std::set<std::pair<std::uint32_t, std::uint32_t>> told;  // by both facets of the edge
   for (std::size_t k = 0; k < order.size() && told.size() < 100; ++k) {
-    const Facet& facet = mesh.facets[k];
-    if (std::abs(facet.slope_x) <= steepest_slope && std::abs(facet.slope_y) <= steepest_slope) continue;
+    if (!is_cliff(mesh.facets[k])) continue;
     const RawFacet raw = from_widest_corner(cloud, facets[order[k]]);
     const auto length = [&](int i) { return edge_length(cloud, raw, i); };
     const int shortest = length(0) < length(1) ? (length(0) < length(2) ? 0 : 2) : (length(1) < length(2) ? 1 : 2);
@@ -153,8 +160,8 @@ std::shared_ptr<const MeshStorage> build_mesh(const PointCloud& places, const Cl
   mesh.base = extent.base;
   {
     const auto order = order_by_corners(places.points.size(), facets, gone);
-    make_facets(places, facets, order, take_vertices(places, facets, gone, *storage), *storage);
-    refuse_cliffs(places, facets, order, *storage, findings);
+    if (make_facets(places, facets, order, take_vertices(places, facets, gone, *storage), *storage))
+      refuse_cliffs(places, facets, order, *storage, findings);
   }
   if (findings.has_errors()) return nullptr;
   finish(*storage);

@@ -26,9 +26,9 @@ constexpr std::size_t most_points = 300;  // where a neighbourhood grows no more
 // The fits of a few vertices at a time, into the results.
 class VertexFits {
  public:
-  VertexFits(const Mesh& mesh, const Neighbours& neighbours, const std::vector<char>& is_on_rim, numerics::UnsetArray<CubicFit>& fits,
+  VertexFits(const Mesh& mesh, const Neighbours& neighbours, numerics::UnsetArray<CubicFit>& fits,
              std::vector<char>& reaches_rim)
-      : mesh_(mesh), is_on_rim_(is_on_rim), fits_(fits), reaches_rim_(reaches_rim), neighbours_(neighbours), rings_(neighbours) {}
+      : mesh_(mesh), fits_(fits), reaches_rim_(reaches_rim), neighbours_(neighbours), rings_(neighbours) {}
 
   // From two rings on, with more for those vertices alone that need them.
   void operator()(std::uint32_t begin, std::uint32_t end) {
@@ -95,7 +95,7 @@ class VertexFits {
     widen(vertex);
     std::span<const std::uint32_t> around = rings_.vertices().subspan(1);
     char reaches_rim = 0;  // (a vertex of the rim has neighbours there)
-    for (const std::uint32_t v : around) reaches_rim |= is_on_rim_[v];
+    for (const std::uint32_t v : around) reaches_rim |= neighbours_.is_on_rim(v);
     reaches_rim_[vertex] = reaches_rim;
     if (around.size() > most_points) around = thinned_out(around);
     cubics_.put(lane, mesh_.vertices[vertex], mesh_.vertices, around);
@@ -103,7 +103,6 @@ class VertexFits {
   }
 
   const Mesh& mesh_;
-  const std::vector<char>& is_on_rim_;
   numerics::UnsetArray<CubicFit>& fits_;
   std::vector<char>& reaches_rim_;
   const Neighbours& neighbours_;
@@ -146,8 +145,7 @@ PatchFit fit_patches(const Mesh& mesh, int thread_count) {
   numerics::UnsetArray<CubicFit> fits(mesh.vertex_count);
   {
     const Neighbours neighbours(mesh);
-    const std::vector<char> is_on_rim = vertices_on_rim(mesh);
-    share(mesh.vertex_count, thread_count, [&] { return VertexFits(mesh, neighbours, is_on_rim, fits, result.reaches_rim); });
+    share(mesh.vertex_count, thread_count, [&] { return VertexFits(mesh, neighbours, fits, result.reaches_rim); });
   }
   result.patches.resize(mesh.facet_count);
   share(mesh.facet_count, thread_count, [&] {

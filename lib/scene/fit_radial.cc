@@ -44,7 +44,6 @@ RadialFit<function> fit_radial(const surface::Mesh& mesh, const RadialOptions& o
   const double shape = options.shape_mm > 0 ? options.shape_mm : mean_edge_length(mesh);
   fit.shape_squared = function == RadialFunction::multiquadric ? shape * shape : 0;
   fit.patches.reserve(mesh.facet_count);
-  const std::vector<char> is_on_rim = vertices_on_rim(mesh);
   const Neighbours neighbours(mesh);
   Rings rings(neighbours);
   Eigen::MatrixXd matrix;
@@ -55,7 +54,7 @@ RadialFit<function> fit_radial(const surface::Mesh& mesh, const RadialOptions& o
     for (int ring = 0; ring < options.rings; ++ring) rings.add_ring();
     const std::span<const std::uint32_t> nodes = rings.vertices();
     const auto count = static_cast<Eigen::Index>(nodes.size());
-    fit.reaches_rim.push_back(std::any_of(nodes.begin(), nodes.end(), [&](std::uint32_t node) { return is_on_rim[node]; }));
+    fit.reaches_rim.push_back(std::any_of(nodes.begin(), nodes.end(), [&](std::uint32_t node) { return neighbours.is_on_rim(node); }));
     const auto& v0 = mesh.vertices[corner[0]];
     double scale = 0;
     for (const std::uint32_t node : nodes) scale = std::max(scale, std::hypot(mesh.vertices[node].x - v0.x, mesh.vertices[node].y - v0.y));

@@ -3,6 +3,7 @@
 // data of rings or scan lines, where the nearest points in space all lie on one line, they are the right neighbours.
 #pragma once
 
+#include <array>
 #include <initializer_list>
 #include <span>
 #include <vector>
@@ -11,32 +12,27 @@
 
 namespace sagitta::scene {
 
-// Of each vertex: whether it lies on the rim or on a hole.
-inline std::vector<char> vertices_on_rim(const surface::Mesh& mesh) {
-  std::vector<char> is_on_rim(mesh.vertex_count, false);
-  for (std::uint32_t f = 0; f < mesh.facet_count; ++f)
-    for (int i = 0; i < 3; ++i) {
-      if (mesh.facets[f].neighbour[i] == surface::no_facet)
-        is_on_rim[mesh.corners[f][(i + 1) % 3]] = is_on_rim[mesh.corners[f][(i + 2) % 3]] = true;
-    }
-  return is_on_rim;
-}
-
-// The vertices that share an edge with each vertex, as lists end to end, in the order of the facets.
+// The vertices that share an edge with each vertex, as lists end to end.
 class Neighbours {
  public:
-  explicit Neighbours(const surface::Mesh& mesh) : begin_(mesh.vertex_count + 1, 0) {
+  explicit Neighbours(const surface::Mesh& mesh) : begin_(mesh.vertex_count + 1, 0), is_on_rim_(mesh.vertex_count, false) {
     // Each facet gives each corner the next one anticlockwise: all neighbours of a vertex that facets surround. On a rim
     // the edge has no facet that would give it the other way round.
+    std::vector<std::array<std::uint32_t, 2>> rim;
+    for (std::uint32_t f = 0; f < mesh.facet_count; ++f) {
+      const auto& [a, b, c] = mesh.corners[f];
+      const auto& across = mesh.facets[f].neighbour;
+      if (across[0] == surface::no_facet) rim.push_back({c, b});
+      if (across[1] == surface::no_facet) rim.push_back({a, c});
+      if (across[2] == surface::no_facet) rim.push_back({b, a});
+    }
+    for (const auto& [a, b] : rim) is_on_rim_[a] = is_on_rim_[b] = true;
     const auto for_each_pair = [&](auto&& take) {
       for (std::uint32_t f = 0; f < mesh.facet_count; ++f) {
         const auto& [a, b, c] = mesh.corners[f];
         take(a, b), take(b, c), take(c, a);
-        const auto& across = mesh.facets[f].neighbour;
-        if (across[0] == surface::no_facet) take(c, b);
-        if (across[1] == surface::no_facet) take(a, c);
-        if (across[2] == surface::no_facet) take(b, a);
       }
+      for (const auto& [a, b] : rim) take(a, b);
     };
     for_each_pair([&](std::uint32_t vertex, std::uint32_t) { ++begin_[vertex + 1]; });
     for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
@@ -48,9 +44,12 @@ class Neighbours {
   std::span<const std::uint32_t> of(std::uint32_t vertex) const {
     return {list_.data() + begin_[vertex], begin_[vertex + 1] - begin_[vertex]};
   }
+  // Or on a hole.
+  bool is_on_rim(std::uint32_t vertex) const { return is_on_rim_[vertex]; }
 
  private:
   std::vector<std::uint32_t> begin_, list_;
+  std::vector<char> is_on_rim_;
 };
 
 // Grows ring by ring around a set of vertices.

@@ -46,7 +46,13 @@ PointCloud distinct_places(const PointCloud& cloud, const Rectangle& all, const 
   std::vector<std::uint32_t> order = along_curve(points, all, window);
   std::size_t count = 0, repeated = 0;
   std::uint32_t first_repeated = 0;
-  for (const std::uint32_t i : order) {
+  constexpr std::size_t ahead = 16;  // what is read in the curve's order, which nothing could guess, is asked for so early
+  const auto ask_for = [&](std::size_t k) {
+    if (k < order.size()) __builtin_prefetch(&points[order[k]]);
+  };
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    ask_for(k + ahead);
+    const std::uint32_t i = order[k];
     if (count == 0 || points[order[count - 1]].x != points[i].x || points[order[count - 1]].y != points[i].y) {
       order[count++] = i;
       continue;
@@ -75,6 +81,7 @@ PointCloud distinct_places(const PointCloud& cloud, const Rectangle& all, const 
   places.points.reserve(count);
   places.lines.reserve(count);
   for (std::size_t k = 0; k < count; ++k) {
+    ask_for(k + ahead);
     places.points.push_back(points[order[k]]);
     places.lines.push_back(static_cast<std::uint32_t>(number_of(cloud, order[k])));
   }

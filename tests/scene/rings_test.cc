@@ -26,14 +26,13 @@ TEST(Neighbours, are_the_other_ends_of_all_edges) {
         for (const std::uint32_t b : corners)
           if (a != b) expected[a].insert(b);
     const Neighbours neighbours(storage->mesh);
-    const std::vector<char> is_on_rim = vertices_on_rim(storage->mesh);
     int on_rim = 0;
     for (std::uint32_t v = 0; v < expected.size(); ++v) {
       const auto of = neighbours.of(v);
       std::vector<std::uint32_t> sorted(of.begin(), of.end());
       std::sort(sorted.begin(), sorted.end());
       EXPECT_TRUE(std::equal(sorted.begin(), sorted.end(), expected[v].begin(), expected[v].end())) << layout.name << ' ' << v;
-      on_rim += is_on_rim[v];
+      on_rim += neighbours.is_on_rim(v);
     }
     EXPECT_GT(on_rim, 30) << layout.name;
   }
