@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Zernike terms as polynomials in x and y (polynomial.h):
 //
-//   R_n^m rho^... :  Z_n^m = N_n^m h_m sum_s (-1)^s (n-s)! / (s! ((n+m)/2-s)! ((n-m)/2-s)!) u^k,   k = (n-m)/2 - s  (1)
-//   u^k = (x^2 + y^2)^k,   h_m the real or imaginary part of (x + i y)^m, expanded by binomials.
+//   Z_n^m = N_n^m h_m sum_s (-1)^s (n-s)! / (s! ((n+m)/2-s)! ((n-m)/2-s)!) u^k,   k = (n-m)/2 - s,   m = |m|        (1)
+//   u^k = (x^2 + y^2)^k and h_m, the real or (m < 0) imaginary part of (x + i y)^m, expanded by binomials.
 //
 // All factors are whole numbers below 2^53 up to the order 12. There cancellation in (1) costs some four digits of a
 // term near the rim, 1e-12 of it: beyond, the recurrence of zernike_basis.h is needed.
+//
+// Source: Born and Wolf, Principles of Optics (7th ed., 1999), section 9.2.1, for the radial polynomials of (1).
 #pragma once
 
 #include <cstddef>

@@ -43,6 +43,7 @@ TEST(Difference, is_over_the_samples_that_both_have) {
 // Two samples: a tilt takes all. Elsewhere a tilted plane with x^2 - y^2, which has neither piston nor tilt on the disc's grid.
 TEST(Difference, without_tilt_is_what_no_plane_takes) {
   const Wavefront zero = wavefront_of({nan, 0, nan, 0, nan, 0, nan, nan, nan}), two = wavefront_of({nan, 3, nan, 7, nan, nan, nan, nan, nan});
+  // two roundings of OPDs up to 7, half of 2^-50 each
   EXPECT_NEAR(wavefront_difference(two, zero).rms_without_tilt_waves, 0, 1e-15);
   EXPECT_EQ(wavefront_difference(two, zero).rms_waves, 2);
   constexpr int size = 16;

@@ -62,7 +62,7 @@ TEST(Comparison, sheets_have_a_row_for_each_system_and_common_scales) {
   EXPECT_FLOAT_EQ(static_cast<float>(panels[1].range->high), 0.02f * 75.25f);
   EXPECT_EQ(panels[1].range->high, panels[4].range->high);
   EXPECT_EQ(panels[5].range->low, -panels[5].range->high);
-  // the difference 0.01 (i + x y), x and y from the middle: i is a plane, x y has none
+  // the difference 0.01 (i + x y), x and y from the middle: i is a plane, x y has none; floats round the sums up to 1.5 by 9e-8
   EXPECT_NEAR(panels[5].map.values.front(), 0.01 * 12.25, 1e-7);
   EXPECT_NEAR(panels[5].map.values[7], -0.01 * 12.25, 1e-7);
   EXPECT_EQ(panels[5].subtitle.front().find("RMS without piston and tilt "), 0u);
