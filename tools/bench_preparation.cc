@@ -2,13 +2,20 @@
 // Seconds of preparing a point cloud for tracing, of which the Delaunay triangulation is the part that no other program
 // escapes: the whole (repeated points, trimming, mesh, patches of c1) is given as a multiple of it.
 //
+// Each is measured in a process of its own, as a user's command has it: in one that did the same before, some of what it
+// needs would be warm memory that it had before, and mostly the triangulation's.
+//
 // The points lie over a square, in random places and random order, or on a regular grid, row by row; the heights are a cornea's.
 #include "tools/bench_preparation.h"
 
 #include <benchmark/benchmark.h>
 #include <fmt/core.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <array>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <string>
 
@@ -35,28 +42,49 @@ prescription::PointCloud cloud_of(int side, bool is_regular) {
   return cloud;
 }
 
+// What work() returns, which it does in a new process; NaNs where that fails.
 template <class Work>
-double seconds_of(int thread_count, const Work& work) {
-  const double before = now(thread_count);
-  work();
-  return now(thread_count) - before;
+auto in_a_process_of_its_own(const Work& work) {
+  decltype(work()) result;
+  result.fill(std::numeric_limits<double>::quiet_NaN());
+  int ends[2];
+  if (pipe(ends) != 0) return result;
+  const pid_t child = fork();
+  if (child == 0) {
+    const auto made = work();
+    _exit(write(ends[1], made.data(), sizeof made) == sizeof made ? 0 : 1);
+  }
+  close(ends[1]);
+  if (child > 0) {
+    auto made = result;
+    if (read(ends[0], made.data(), sizeof made) == sizeof made) result = made;
+    waitpid(child, nullptr, 0);
+  }
+  close(ends[0]);
+  return result;
 }
 
 void measure(benchmark::State& state, int side, bool is_regular, int thread_count) {
   const prescription::PointCloud cloud = cloud_of(side, is_regular);
   double delaunay = 0, mesh = 0, patches = 0;
   for (auto _ : state) {
-    delaunay += seconds_of(thread_count, [&] {
+    const auto [triangulating] = in_a_process_of_its_own([&] {
+      const double begin = now(thread_count);
       std::vector<numerics::Vec3<double>> points;
       points.reserve(cloud.points.size());
       for (const std::uint32_t i : scene::along_curve(cloud.points)) points.push_back(cloud.points[i]);
       benchmark::DoNotOptimize(scene::delaunay(points).data());
+      return std::array{now(thread_count) - begin};
     });
-    scene::Triangulation made;
-    const double making = seconds_of(thread_count, [&] { made = scene::triangulate(cloud); });
-    if (!made.mesh) return state.SkipWithError("the points make no mesh");
-    const double fitting = seconds_of(thread_count, [&] { benchmark::DoNotOptimize(scene::fit_patches(made.mesh->mesh, thread_count).patches.data()); });
+    const auto [making, fitting] = in_a_process_of_its_own([&] {
+      const double begin = now(thread_count);
+      const auto mesh_of_cloud = scene::triangulate(cloud).mesh;
+      const double made = now(thread_count);
+      benchmark::DoNotOptimize(scene::fit_patches(mesh_of_cloud->mesh, thread_count).patches.data());
+      return std::array{made - begin, now(thread_count) - made};
+    });
     state.SetIterationTime(making + fitting);
+    delaunay += triangulating;
     mesh += making;
     patches += fitting;
   }

@@ -34,7 +34,9 @@ struct CubicFit {
   double u_per_x, v_per_y, shear;       // 1/s_u, 1/s_v and t of (1)
   int terms;                            // determined: 9, 5, 2 or none
 
-  surface::CloughTocherPatch::Slope gradient(double X, double Y) const {
+  using Slope = surface::CloughTocherPatch::Slope;
+  Slope gradient() const { return {u_per_x * c[0] - shear * v_per_y * c[1], v_per_y * c[1]}; }  // at V
+  Slope gradient(double X, double Y) const {
     const double u = u_per_x * X, v = v_per_y * (Y - shear * X);
     const double along_u = c[0] + 2 * c[2] * u + c[3] * v + 3 * c[5] * u * u + 2 * c[6] * u * v + c[7] * v * v;
     const double along_v = c[1] + c[3] * u + 2 * c[4] * v + c[6] * u * u + 2 * c[7] * u * v + 3 * c[8] * v * v;

@@ -117,7 +117,7 @@ CloughTocherPatch patch_of(const Mesh& mesh, std::uint32_t facet, const numerics
   CloughTocherPatch::Slope slopes[3];
   for (int i = 0; i < 3; ++i) {
     const std::uint32_t v = corner[i];
-    corners[i] = {mesh.vertices[v], fits[v].gradient(0, 0)};
+    corners[i] = {mesh.vertices[v], fits[v].gradient()};
     // The two facets of an edge have its ends the other way round, and slopes of the same bits: signs and sums are exact.
     const std::uint32_t a = corner[(i + 1) % 3], b = corner[(i + 2) % 3];
     const double X = (mesh.vertices[b].x - mesh.vertices[a].x) / 2, Y = (mesh.vertices[b].y - mesh.vertices[a].y) / 2;
