@@ -136,7 +136,7 @@ std::vector<ComparedModel> make_variants(const prescription::Model& system, cons
   if (fits && !radius) {
     radius = footprint_radius(system, static_cast<int>(at) + 1);
     if (!radius) {
-      fmt::print(stderr, "sagitta compare: no ray of {} reaches '{}': give the circle of the fits by --radius-mm\n", system.file, request.surface);
+      fmt::print(stderr, "sagitta compare: no ray of {} can be traced to '{}': give the circle of the fits by --radius-mm\n", system.file, request.surface);
       return {};
     }
     radius = std::min(margin * *radius, data_radius(*points.cloud));

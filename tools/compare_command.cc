@@ -130,7 +130,7 @@ bool write_all(const fs::path& folder, const output::Comparison& comparison, con
   for (std::size_t field = figures.size(); fs::remove(sheet_of(field), none_there); ++field) {}  // of an earlier run
   bool all_written = write_image("compare", folder / "comparison", parts(comparison), figures.front());
   for (std::size_t field = 1; field < figures.size(); ++field)
-    all_written &= written("compare", output::write_png(sheet_of(field).string(), render(figures[field])));
+    all_written &= write_picture("compare", sheet_of(field), figures[field]);
   return written("compare", output::write_file((folder / "summary.json").string(), summary)) && all_written;
 }
 

@@ -10,6 +10,7 @@
 #include "lib/prescription/cloud_reader.h"
 #include "tools/commands.h"
 #include "tools/load.h"
+#include "tools/version.h"
 #include "tools/write.h"
 
 namespace sagitta::tools {
@@ -24,8 +25,8 @@ int convert_command(const ConvertOptions& options) {
   prescription::Findings findings;
   const auto cloud = prescription::read_cloud({options.points, options.format, osa_axes}, findings);
   if (!report(findings) || !cloud) return 1;
-  const std::string comment = fmt::format("{} by sagitta " SAGITTA_VERSION "; mm, in the frame of the surface",
-                                          std::filesystem::path(options.points).filename().string());
+  const std::string comment = fmt::format("{} by sagitta {}; mm, in the frame of the surface",
+                                          std::filesystem::path(options.points).filename().string(), version());
   const output::WriteResult written = output::write_ply(options.file, cloud->points, comment);
   if (!written.ok()) {
     fmt::print(stderr, "sagitta convert: {}\n", written.error);

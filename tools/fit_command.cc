@@ -8,6 +8,7 @@
 #include "lib/prescription/cloud_reader.h"
 #include "tools/commands.h"
 #include "tools/load.h"
+#include "tools/version.h"
 #include "tools/write.h"
 
 namespace sagitta::tools {
@@ -44,7 +45,7 @@ int fit_command(const FitOptions& options) {
   auto map = scene::residual_map(*fit.surface);
   if (!report(map.findings)) return 1;
 
-  const output::FitReport result{options.points, SAGITTA_VERSION, *std::move(fit.surface), *std::move(map.map)};
+  const output::FitReport result{options.points, version(), *std::move(fit.surface), std::move(map.map)};
   fmt::print("{}", options.json ? fit_json(result) : fit_text(result));
   if (fragment.empty()) {
     if (!options.json) fmt::print("\n{}", fit_shape(result));
@@ -52,7 +53,8 @@ int fit_command(const FitOptions& options) {
   }
   if (!make_folder("fit", fragment.parent_path())) return 1;
   // The fragment last: where it is there, all of it is.
-  return write_image("fit", base, {residual_part(result)}, residual_figure(result)) && written("fit", output::write_file(fragment.string(), fit_fragment(result))) ? 0 : 1;
+  const bool map_written = !result.map || write_image("fit", base, {residual_part(result)}, residual_figure(result));
+  return map_written && written("fit", output::write_file(fragment.string(), fit_fragment(result))) ? 0 : 1;
 }
 
 }  // namespace sagitta::tools

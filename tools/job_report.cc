@@ -8,6 +8,7 @@
 
 #include "lib/output/progress.h"
 #include "tools/load.h"
+#include "tools/version.h"
 
 namespace sagitta::tools {
 
@@ -27,7 +28,7 @@ std::optional<analysis::JobRequest> make_request(const char* command, const JobO
 output::Report make_report(const prescription::Model& model, const scene::CompileResult& compiled) {
   output::Report report;
   report.system = model.name.empty() ? std::filesystem::path(model.file).stem().string() : model.name;
-  report.version = SAGITTA_VERSION;
+  report.version = version();
   report.fields_are_heights = model.fields.kind == prescription::FieldKind::object_heights_mm;
   for (const auto& field : model.fields.points) report.fields.push_back({field.x, field.y});
   report.wavelengths_nm = model.wavelengths_nm;

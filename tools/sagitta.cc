@@ -14,6 +14,7 @@
 #include "lib/prescription/cloud_reader.h"
 #include "lib/scene/fit_zernike.h"
 #include "tools/commands.h"
+#include "tools/version.h"
 
 namespace {
 
@@ -138,7 +139,7 @@ void add_fit(CLI::App& app, int& status) {
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is an error to report, not a reason to die
   CLI::App app{"Sagitta: sequential ray tracing of eyes and lenses, from a text file to spots and wavefronts.", "sagitta"};
-  app.set_version_flag("--version", "sagitta " SAGITTA_VERSION);
+  app.set_version_flag("--version", about_this_build, "Print what this build is: version, compiler, libraries, licence");
   app.footer(usage_status);
   app.require_subcommand(1);
   int status = 0;

@@ -3,7 +3,7 @@
 
 #include <fmt/core.h>
 
-#include "lib/output/raster.h"
+#include "tools/pictures.h"
 
 namespace sagitta::tools {
 
@@ -32,9 +32,16 @@ bool written(const char* command, const output::WriteResult& result) {
 }
 
 bool write_image(const char* command, const std::filesystem::path& base, std::vector<output::ExrPart> parts, const output::Figure& figure) {
-  const output::Raster picture = output::render(figure);
-  parts.insert(parts.begin(), output::preview_part(picture));
-  return written(command, output::write_exr(base.string() + ".exr", parts)) && written(command, output::write_png(base.string() + ".png", picture));
+  const Pictures* made = pictures(command);
+  if (!made) return false;
+  const output::Raster picture = made->render(figure);
+  parts.insert(parts.begin(), made->preview_part(picture));
+  return written(command, made->write_exr(base.string() + ".exr", parts)) && written(command, made->write_png(base.string() + ".png", picture));
+}
+
+bool write_picture(const char* command, const std::filesystem::path& file, const output::Figure& figure) {
+  const Pictures* made = pictures(command);
+  return made && written(command, made->write_png(file.string(), made->render(figure)));
 }
 
 }  // namespace sagitta::tools

@@ -24,4 +24,7 @@ bool written(const char* command, const output::WriteResult& result);
 // BASE.exr, the figure as its preview before the parts, and BASE.png.
 bool write_image(const char* command, const std::filesystem::path& base, std::vector<output::ExrPart> parts, const output::Figure& figure);
 
+// The figure alone, as a PNG.
+bool write_picture(const char* command, const std::filesystem::path& file, const output::Figure& figure);
+
 }  // namespace sagitta::tools

@@ -38,6 +38,10 @@ std::string yaml_number(double value) { return std::isinf(value) ? (value > 0 ? 
 // -0 is 0.
 std::string six_places(double value) { return fmt::format("{:.6f}", std::round(value * 1e6) / 1e6 + 0.0); }
 
+std::string coverage_of(const FitReport& report, const char* before, const char* after) {
+  return report.map ? fmt::format("{}{:.1f} % of the circle inside them{}", before, 100 * report.map->coverage, after) : "";
+}
+
 std::string name_of(const std::string& file) { return printable(file.substr(file.rfind('/') + 1), 60); }
 
 }  // namespace
@@ -56,9 +60,9 @@ std::string fit_text(const FitReport& report) {
     const numerics::ZernikeTerm term = numerics::zernike_term(fit.indexing, index);
     terms.rows.push_back({std::to_string(index++), std::to_string(term.n), std::to_string(term.m), six_places(um)});
   }
-  return fmt::format("{}: {} points within {:g} mm, {:.1f} % of the circle inside them\nin {}\n\n{}{}\n"
+  return fmt::format("{}: {} points within {:g} mm{}\nin {}\n\n{}{}\n"
                      "peak to valley {} um, condition number {:.4g}, normalisation radius {:g} mm\n\n{}",
-                     printable(report.file, 200), fit.point_count, fit.normalization_radius_mm, 100 * report.map.coverage, frame, to_text(fits),
+                     printable(report.file, 200), fit.point_count, fit.normalization_radius_mm, coverage_of(report, ", ", ""), frame, to_text(fits),
                      fit.conic_is_sphere ? "the points tell no conic constant from -100 to 100: the conic is the sphere\n" : "",
                      micrometres(fit.peak_to_valley_um), fit.condition_number, fit.normalization_radius_mm, to_text(terms));
 }
@@ -70,7 +74,7 @@ std::string fit_json(const FitReport& report) {
       {"version", report.version},
       {"frame", frame},
       {"points_used", fit.point_count},
-      {"coverage", report.map.coverage},
+      {"coverage", report.map ? ordered_json(report.map->coverage) : ordered_json()},
       {"condition_number", fit.condition_number},
       {"sphere", {{"radius_mm", fit.sphere_radius_mm}, {"vertex_z_mm", fit.sphere_vertex_mm}, {"rms_um", fit.sphere_rms_um}}},
       {"conic", {{"radius_mm", fit.radius_mm}, {"conic_constant", fit.conic_constant}, {"is_sphere", fit.conic_is_sphere},
@@ -106,15 +110,15 @@ std::string fit_fragment(const FitReport& report) {
   const ZernikeSurface& fit = report.surface;
   return fmt::format("# A surface's shape: the best-fit {} of {} with {}, by sagitta {} (sagitta fit).\n"
                      "# {} points within {:g} mm; they differ from it by {:.4g} um RMS, {:.4g} um peak to valley; condition number {:.4g};\n"
-                     "# {:.1f} % of the circle inside them. In {}.\n{}",
+                     "# {}In {}.\n{}",
                      fit.conic_is_sphere ? "sphere" : "conic", printable(report.file, 200), terms_of(fit), report.version, fit.point_count, fit.normalization_radius_mm, fit.rms_um,
-                     fit.peak_to_valley_um, fit.condition_number, 100 * report.map.coverage, frame, fit_shape(report));
+                     fit.peak_to_valley_um, fit.condition_number, coverage_of(report, "", ". "), frame, fit_shape(report));
 }
 
 ExrPart residual_part(const FitReport& report) {
   const ZernikeSurface& fit = report.surface;
-  const auto pixel = static_cast<float>(report.map.pixel_mm);
-  return {"residual", report.map.size, report.map.size, {{"Y", report.map.residual_um}},
+  const auto pixel = static_cast<float>(report.map->pixel_mm);
+  return {"residual", report.map->size, report.map->size, {{"Y", report.map->residual_um}},
           {{"points", printable(report.file, 1000)},
            {"software", "sagitta " + report.version},
            {"quantity", "residual of the Zernike surface"},
@@ -127,7 +131,7 @@ ExrPart residual_part(const FitReport& report) {
            {"normalization_radius_mm", fit.normalization_radius_mm},
            {"terms", terms_of(fit)},
            {"points_used", static_cast<double>(fit.point_count)},
-           {"coverage", report.map.coverage},
+           {"coverage", report.map->coverage},
            {"rms_um", fit.rms_um},
            {"peak_to_valley_um", fit.peak_to_valley_um},
            {"condition_number", fit.condition_number}}};
@@ -138,8 +142,8 @@ Figure residual_figure(const FitReport& report) {
   Panel panel;
   panel.title = fmt::format("{}: RMS {} µm", terms_of(fit), significant(fit.rms_um, 4));
   panel.subtitle = {fmt::format("peak to valley {} µm, {} points within {:g} mm", significant(fit.peak_to_valley_um, 4), fit.point_count, fit.normalization_radius_mm)};
-  panel.map = {report.map.size, report.map.size, report.map.residual_um};
-  panel.axes.pixel_width = panel.axes.pixel_height = report.map.pixel_mm;
+  panel.map = {report.map->size, report.map->size, report.map->residual_um};
+  panel.axes.pixel_width = panel.axes.pixel_height = report.map->pixel_mm;
   panel.color_map = ColorMap::diverging;
   panel.quantity = "measured − fitted z";
   panel.unit = "µm";

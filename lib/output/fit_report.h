@@ -3,6 +3,7 @@
 // Everything is in the surface's local frame, and says so.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "lib/output/exr.h"
@@ -15,7 +16,7 @@ namespace sagitta::output {
 struct FitReport {
   std::string file, version;  // of the points; of the program
   scene::ZernikeSurface surface;
-  scene::ResidualMap map;
+  std::optional<scene::ResidualMap> map;  // none in a build without a triangulation
 };
 
 std::string fit_text(const FitReport& report);
@@ -27,7 +28,7 @@ std::string fit_shape(const FitReport& report);
 // The same as a file, with a head comment that tells where it comes from.
 std::string fit_fragment(const FitReport& report);
 
-// The part `residual`, its channel Y in um: measured z minus fitted z, NaN where there is none.
+// Of the map, which is there. The part `residual`, its channel Y in um: measured z minus fitted z, NaN where there is none.
 ExrPart residual_part(const FitReport& report);
 Figure residual_figure(const FitReport& report);
 

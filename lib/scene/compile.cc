@@ -168,6 +168,9 @@ CompileResult compile_for(const Model& model, const Beam& beam) {
   scene.surfaces.resize(model.surfaces.size());
   for (const double nm : model.wavelengths_nm) scene.wavelengths.push_back(compile_wavelength(model, nm, findings));
   scene.primary = compile_wavelength(model, model.primary_wavelength_nm(), findings);
+  for (const prescription::Surface& given : model.surfaces)
+    if (given.shape.cloud)
+      if (const auto missing = missing_triangulation(given.shape.place)) findings.add(*missing);
   if (findings.has_errors()) return result;
 
   place_surfaces(model, scene);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The Delaunay triangulation of points in (x, y), and the order of points in which it is made fast.
+// The Delaunay triangulation of points in (x, y), where the build has one, and the order of points in which it is made fast.
 //
 // Source: exact predicates and insertion by CGAL 5.5; the order is Morton's (IBM, 1966).
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 #include "lib/numerics/vec3.h"
@@ -30,5 +31,9 @@ std::vector<std::uint32_t> along_curve(const std::vector<numerics::Vec3<double>>
 // with their square). None if all lie on a straight line. The facets are a function of the set of points: of those on a
 // common circle, too, no order of insertion decides (ties are broken by the order of x, then y).
 std::vector<RawFacet> delaunay(const std::vector<numerics::Vec3<double>>& points);
+
+// What delaunay() is made with, such as "CGAL 5.5.1"; empty in a build without (SAGITTA_CGAL of CMakeLists.txt), where it finds
+// no facet of any points. CMake links one of two files, and nothing else differs.
+std::string_view triangulator();
 
 }  // namespace sagitta::scene

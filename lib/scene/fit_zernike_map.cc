@@ -13,6 +13,11 @@
 namespace sagitta::scene {
 
 ResidualMapResult residual_map(const ZernikeSurface& surface) {
+  if (const auto missing = missing_triangulation({surface.points.file})) {
+    prescription::Findings findings;
+    findings.note(missing->place, "no residual map, and no coverage: " + missing->what);
+    return {std::nullopt, std::move(findings)};
+  }
   Triangulation made = triangulate(surface.points);
   if (!made.mesh) return {std::nullopt, std::move(made.findings)};
   const surface::Mesh& mesh = made.mesh->mesh;

@@ -24,7 +24,7 @@ struct ResidualMap {
 };
 
 struct ResidualMapResult {
-  std::optional<ResidualMap> map;   // none exactly when there is an error among the findings
+  std::optional<ResidualMap> map;   // none where there is an error among the findings, or no triangulation in this build
   prescription::Findings findings;  // of the triangulation
 };
 

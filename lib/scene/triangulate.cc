@@ -109,6 +109,7 @@ bool spread_is_legal(const PointCloud& places, Findings& findings) {
 // All of the cloud where there is no window.
 void triangulate_within(const Rectangle* window, const PointCloud& cloud, const CloudExtent& extent, double max_edge, Triangulation& result) {
   Findings& findings = result.findings;
+  if (const auto missing = missing_triangulation({cloud.file})) return findings.add(*missing);
   // From here on points go by their numbers along the curve: what is near on the surface is near in memory.
   const PointCloud places = distinct_places(cloud, extent.places, window ? *window : extent.places, findings);
   result.place_count = places.points.size();
@@ -142,6 +143,12 @@ std::string name_of(const PointCloud& cloud, std::size_t point) {
 
 std::string before_what(const PointCloud& cloud, std::size_t point) {
   return cloud.has_lines ? "" : name_of(cloud, point) + ": ";
+}
+
+std::optional<prescription::Finding> missing_triangulation(const prescription::Place& place) {
+  if (!triangulator().empty()) return std::nullopt;
+  return prescription::Finding{place, prescription::Severity::error, "points cannot be triangulated: this build of sagitta is without CGAL",
+                               "build it with cmake -DSAGITTA_CGAL=ON, or trace a fit to the points (sagitta fit)"};
 }
 
 bool has_legal_coordinates(const PointCloud& cloud) { return std::all_of(cloud.points.begin(), cloud.points.end(), is_legal); }

@@ -4,7 +4,7 @@
 //
 // Refused, with the line of the point: fewer than 3 places, all points on one straight line, two heights at one place,
 // two heights so near one place that no slope can be told (more than 1e9), a coordinate beyond +-1e9 mm, points that
-// all lie within 1e-6 mm. Repeated points merge, with a note; of a hole and a height at one place the height stays.
+// all lie within 1e-6 mm; and any points by a build without a triangulation (delaunay.h). Repeated points merge, with a note; of a hole and a height at one place the height stays.
 //
 // Left out of the surface:
 // - facets with a corner that is an explicit hole (z NaN);
@@ -24,6 +24,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "lib/prescription/point_cloud.h"
@@ -54,6 +55,9 @@ struct Triangulation {
 
 Triangulation triangulate(const prescription::PointCloud& cloud,
                           double max_edge = std::numeric_limits<double>::infinity());
+
+// An error at `place`, where points are asked to be triangulated, in a build that cannot; none in one that can.
+std::optional<prescription::Finding> missing_triangulation(const prescription::Place& place);
 
 // Where the whole cloud lies. All that steers a ray depends on it, and not on the facets at hand: part of a cloud's facets
 // give a ray the same bits as all of them.

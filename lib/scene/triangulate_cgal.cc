@@ -52,4 +52,6 @@ std::vector<RawFacet> delaunay(const std::vector<numerics::Vec3<double>>& points
   return facets;
 }
 
+std::string_view triangulator() { return "CGAL " CGAL_STRINGIZE(CGAL_VERSION); }
+
 }  // namespace sagitta::scene
