@@ -30,6 +30,7 @@
 #include "tools/bench_clock.h"
 #include "tools/bench_embree.h"
 #include "tools/bench_preparation.h"
+#include "tools/bench_startup.h"
 
 namespace {
 
@@ -281,6 +282,7 @@ int main(int argc, char** argv) {
           measure_embree(state, count, are_random, call);
         })->UseManualTime()->Unit(benchmark::kMillisecond);
   bench::register_preparation();
+  bench::register_startup();
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   fmt::print(stderr, "{}; compiler {}\n", processor(), __VERSION__);
@@ -289,5 +291,6 @@ int main(int argc, char** argv) {
   print_shapes(keeper.medians);
   print_beside_embree(keeper.medians);
   bench::print_preparation(keeper.medians);
+  bench::print_startup(keeper.medians);
   return 0;
 }

@@ -7,10 +7,14 @@
 namespace sagitta::tools {
 
 const Pictures* pictures(const char* command) {
-  static void* const module = dlopen("libsagitta_pictures.so", RTLD_NOW | RTLD_LOCAL);
-  const void* found = module ? dlsym(module, "sagitta_pictures") : nullptr;
-  if (!found) fmt::print(stderr, "sagitta {}: no picture can be made: {}\n  hint: the module belongs beside the program, or in ../lib from there\n", command, dlerror());
-  return static_cast<const Pictures*>(found);
+  static const auto* const found = [command] {
+    void* const module = dlopen("libsagitta_pictures.so", RTLD_NOW | RTLD_LOCAL);
+    const void* const table = module ? dlsym(module, "sagitta_pictures") : nullptr;
+    if (!table)
+      fmt::print(stderr, "sagitta {}: no picture can be made: {}\n  hint: the module belongs beside the program, or in ../lib from there\n", command, dlerror());
+    return static_cast<const Pictures*>(table);
+  }();
+  return found;
 }
 
 }  // namespace sagitta::tools

@@ -17,7 +17,7 @@ struct Pictures {
   decltype(&output::write_png) write_png;
 };
 
-// Null, with a message that names the command, where the module cannot be loaded.
+// Null where the module cannot be loaded; the first time with a message that names the command.
 const Pictures* pictures(const char* command);
 
 }  // namespace sagitta::tools

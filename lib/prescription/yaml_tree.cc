@@ -202,9 +202,15 @@ std::optional<std::string> read_text(const std::string& file, Findings& findings
     findings.error({file}, "cannot be read");
     return std::nullopt;
   }
-  std::string text(most_bytes + 1, '\0');
-  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(stream.gcount()));
+  // In pieces: a buffer for the largest file takes longer to set up than a usual one to read.
+  constexpr std::size_t piece = 1 << 14;
+  std::string text;
+  while (stream && text.size() <= most_bytes) {
+    const std::size_t before = text.size(), wanted = std::min(piece, most_bytes + 1 - before);
+    text.resize(before + wanted);
+    stream.read(text.data() + before, static_cast<std::streamsize>(wanted));
+    text.resize(before + static_cast<std::size_t>(stream.gcount()));
+  }
   if (text.size() > most_bytes) {
     findings.error({file}, "larger than " + std::to_string(most_bytes >> 20) + " MiB, which no such file needs",
                    "points belong into a file of their own");

@@ -51,9 +51,9 @@ struct Outcome {
 };
 
 // `arguments` as a shell would take them.
-inline Outcome run_program(const std::string& arguments, const std::string& before = {}) {
+inline Outcome run_program(const std::string& arguments, const std::string& before = {}, const char* program = SAGITTA_PROGRAM) {
   const Folder folder;
-  const std::string command = before + "'" SAGITTA_PROGRAM "' " + arguments + " >'" + folder.path("out") + "' 2>'" + folder.path("err") + "'";
+  const std::string command = before + "'" + program + "' " + arguments + " >'" + folder.path("out") + "' 2>'" + folder.path("err") + "'";
   const int status = std::system(command.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read_text(folder.path("out")), read_text(folder.path("err"))};
 }
