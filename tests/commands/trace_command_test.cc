@@ -237,15 +237,17 @@ TEST(TraceCommand, a_folder_that_cannot_be_written_is_an_error) {
 
 TEST(TraceCommand, traces_every_shipped_system) {
   const Folder folder;
+  const bool has_cgal = run_program("--version").out.find("by CGAL") != std::string::npos;
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(SAGITTA_SOURCE_DIR "/systems")) {
     if (entry.path().extension() != ".yaml") continue;
+    ++count;
     const Outcome run = run_program("trace " + entry.path().string() + " -o " + folder.path("out") + " --rays 200 --json");
+    if (!has_cgal && run.err.find("without CGAL") != std::string::npos) continue;
     EXPECT_EQ(run.status, 0) << entry.path() << run.err;
     EXPECT_EQ(run.err, "") << entry.path();
     const json summary = json::parse(run.out);
     for (const json& result : summary["results"]) EXPECT_TRUE(result["wavefront"].is_object()) << entry.path();
-    ++count;
   }
   EXPECT_GE(count, 8);
 }
