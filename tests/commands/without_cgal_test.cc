@@ -34,7 +34,7 @@ TEST(WithoutCgal, every_command_that_would_triangulate_says_where_and_what_to_do
   EXPECT_FALSE(std::filesystem::exists(folder.path("out")));
 }
 
-TEST(WithoutCgal, every_surface_of_points_is_told_and_so_is_what_else_compiling_finds) {
+TEST(WithoutCgal, every_surface_of_points_is_told_in_its_place) {
   const Folder folder;
   folder.file("p.xyz", "0 0 0\n1 0 0\n0 1 0\n");
   const std::string surface = "  - {delaunay: {points: p.xyz}, thickness_mm: 1";
