@@ -59,8 +59,10 @@ TEST(StartUp, loads_the_libraries_of_pictures_with_the_first_picture) {
 
 TEST(StartUp, without_the_module_of_pictures_says_so_and_still_writes_the_numbers) {
   const Folder folder;
+  const std::string program = folder.path("sagitta");
+  std::filesystem::copy_file(SAGITTA_PROGRAM, program);
   folder.file("libsagitta_pictures.so", "no library");
-  const Outcome run = run_program("trace " + triplet + " --rays 50 -o " + folder.path("out"), "LD_LIBRARY_PATH='" + folder.path() + "' ");
+  const Outcome run = run_program("trace " + triplet + " --rays 50 -o " + folder.path("out"), {}, program.c_str());
   EXPECT_EQ(run.status, 1);
   EXPECT_THAT(run.err, StartsWith("sagitta trace: no picture can be made: " + folder.path("libsagitta_pictures.so")));
   EXPECT_THAT(run.err, HasSubstr("\n  hint: the module belongs beside the program"));
