@@ -172,6 +172,8 @@ void PanelLayout::draw_map(Canvas& canvas, int x, int y) const {
     const auto last = static_cast<int>((std::int64_t{i} + 1) * count / plot);
     return std::pair{first, std::max(last, first + 1)};
   };
+  float last = 0;  // neighbours often show one value
+  Rgb8 last_color = color_of(last);
   for (int j = 0; j < height_; ++j) {
     const auto [top, bottom] = covered(j, height_, map.height);
     for (int i = 0; i < width_; ++i) {
@@ -183,7 +185,8 @@ void PanelLayout::draw_map(Canvas& canvas, int x, int y) const {
                                          static_cast<std::size_t>(column)];
           if (!(std::abs(value) <= std::abs(shown)) && !std::isnan(value)) shown = value;
         }
-      canvas.pixel(x + i, y + j, color_of(shown));
+      if (shown != last) last_color = color_of(last = shown);  // and so for NaN
+      canvas.pixel(x + i, y + j, last_color);
     }
   }
 }
