@@ -172,6 +172,8 @@ void PanelLayout::draw_map(Canvas& canvas, int x, int y) const {
     const auto last = static_cast<int>((std::int64_t{i} + 1) * count / plot);
     return std::pair{first, std::max(last, first + 1)};
   };
+  std::vector<Rgb8> colors;
+  colors.reserve(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
   float last = 0;  // neighbours often show one value
   Rgb8 last_color = color_of(last);
   for (int j = 0; j < height_; ++j) {
@@ -186,9 +188,10 @@ void PanelLayout::draw_map(Canvas& canvas, int x, int y) const {
           if (!(std::abs(value) <= std::abs(shown)) && !std::isnan(value)) shown = value;
         }
       if (shown != last) last_color = color_of(last = shown);  // and so for NaN
-      canvas.pixel(x + i, y + j, last_color);
+      colors.push_back(last_color);
     }
   }
+  canvas.pixels(x, y, width_, colors);
 }
 
 void PanelLayout::draw_axes(Canvas& canvas, const Box& plot) const {
