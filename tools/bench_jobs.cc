@@ -85,7 +85,9 @@ void measure_program(benchmark::State& state, int thread_count) {
   double bytes = 0, writing = 0;
   for (auto _ : state) {
     const Folder folder;
-    const auto run = run_program({"trace", system, "-o", folder.path().string(), "--rays", std::to_string(ray_count), "--threads", std::to_string(thread_count)});
+    std::vector<std::string> arguments{"trace", system, "-o", folder.path().string(), "--rays", std::to_string(ray_count)};
+    if (thread_count > 0) arguments.insert(arguments.end(), {"--threads", std::to_string(thread_count)});
+    const auto run = run_program(std::move(arguments));
     if (!run) return state.SkipWithError("the program failed");
     state.SetIterationTime(run->wall);
     total.processor += run->processor, total.wall += run->wall;
@@ -215,12 +217,13 @@ void print_jobs(const Medians& medians) {
   row("wavefronts and their Zernike fits", part("wavefronts"));
   row("drawing the pictures", part("pictures"));
   row("encoding EXR and PNG, writing them", part("encoding"));
+  rows += "\n";
   row("the program, one thread: processor", one("processor_s"));
   row("the program, one thread: wall", one("wall_s"));
   row("the program, all threads: processor", all("processor_s"));
   row("the program, all threads: wall", all("wall_s"));
   row("writing the same bytes again", one("writing_s"));
-  if (rows.empty()) return;
+  if (rows == "\n") return;
   fmt::print("\nA whole job: sagitta trace of the Navarro eye, 3 fields, 3 wavelengths, 1e6 rays each; seconds, medians. Above, where\n"
              "the time goes, by the library on one thread (processor); below, the program in a process of its own\n\n{}", rows);
   const double least = part("launch") + part("trace") + one("writing_s"), ratio = one("processor_s") / least;

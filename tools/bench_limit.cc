@@ -107,4 +107,8 @@ double divider_limit(const Medians& medians, int bits, int root_count, int divis
   return 1 / (root_count / million_per_second(medians, Operation::root, bits) + division_count / million_per_second(medians, Operation::divide, bits));
 }
 
+double port_limit(const Medians& medians, int bits, int operation_count) {
+  return million_per_second(medians, Operation::multiply_add, bits) / operation_count;
+}
+
 }  // namespace sagitta::bench

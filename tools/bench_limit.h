@@ -17,4 +17,7 @@ void print_limit(const Medians& medians);
 // `bits`; NaN where the limit was not measured.
 double divider_limit(const Medians& medians, int bits, int root_count, int division_count);
 
+// The same of the ports that multiply and add, where each needs so many operations.
+double port_limit(const Medians& medians, int bits, int operation_count);
+
 }  // namespace sagitta::bench
