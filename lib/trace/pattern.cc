@@ -71,7 +71,7 @@ PupilStream::PupilStream(const Pattern& pattern, std::int64_t at_least)
 PupilPoint PupilStream::point() {
   switch (pattern_.kind) {
     case PatternKind::hexapolar: {
-      if (place_ == 6 * ring_) {
+      if (ring_ > 0 && place_ == 6 * ring_) {
         place_ = 0;
         ring_ -= ring_stride;
         if (ring_ < 1) ring_ = --first_ring_ > rings_ - ring_stride ? first_ring_ : 0;
