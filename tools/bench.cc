@@ -17,117 +17,33 @@
 #include <fstream>
 #include <limits>
 #include <map>
-#include <memory>
-#include <numbers>
-#include <random>
 #include <string>
 #include <vector>
 
-#include "lib/scene/compile.h"
-#include "lib/trace/launch.h"
-#include "lib/trace/pattern.h"
 #include "lib/trace/trace.h"
 #include "tools/bench_clock.h"
 #include "tools/bench_embree.h"
+#include "tools/bench_growth.h"
+#include "tools/bench_jobs.h"
+#include "tools/bench_kernels.h"
+#include "tools/bench_limit.h"
 #include "tools/bench_preparation.h"
 #include "tools/bench_startup.h"
+#include "tools/bench_subject.h"
 
 namespace {
 
 using namespace sagitta;
-using bench::Medians, bench::median, bench::decimal, bench::now;
-
-constexpr double radius = 7.72, conic_constant = -0.26, gap = 0.5, beam_radius = 2, data_radius = 4;
-
-class Random {
- public:
-  // Uniform over a disc.
-  numerics::Vec3<double> in_disc(double disc_radius) {
-    const double r = disc_radius * std::sqrt(next()), angle = 2 * std::numbers::pi * next();
-    return {r * std::cos(angle), r * std::sin(angle), 0};
-  }
-
- private:
-  double next() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
-  std::mt19937_64 engine_{20240607};
-};
-
-prescription::Shape shape_of(const std::string& kind, int point_count) {
-  prescription::Shape shape;
-  shape.kind = point_count > 0 ? "delaunay" : kind;
-  auto& given = shape.parameters;
-  given.numbers = {{"radius_mm", radius}, {"conic_constant", conic_constant}, {"normalization_radius_mm", 3},
-                   {"smoothing_um", 0}, {"max_edge_mm", std::numeric_limits<double>::infinity()}};
-  given.texts = {{"indexing", "osa"}, {"interpolation", kind}};
-  // 36 terms of OSA, of the size of a cornea's: falling with the order, signs in turn.
-  for (int index = 0; index < 36; ++index) {
-    const int order = numerics::osa_term(index).n;
-    given.indexed["coefficients_um"].push_back({index, order < 2 ? 0 : (index % 2 == 0 ? 1 : -1) * 2.0 / std::pow(order, 3)});
-  }
-  if (point_count == 0) return shape;
-  auto cloud = std::make_shared<prescription::PointCloud>();
-  Random random;
-  const surface::Conic cornea{1 / radius, conic_constant};
-  for (int i = 0; i < point_count; ++i) {
-    auto point = random.in_disc(data_radius);
-    point.z = cornea.sag(point.x, point.y);
-    cloud->points.push_back(point);
-  }
-  cloud->lines.resize(cloud->points.size());
-  shape.cloud = std::move(cloud);
-  return shape;
-}
-
-scene::Scene make_scene(const std::string& kind, int point_count, std::size_t copies) {
-  prescription::Model model;
-  model.wavelengths_nm = {550};
-  model.aperture.value = 2 * beam_radius;
-  prescription::Surface first;
-  first.shape = shape_of(kind, point_count);
-  first.stop = true;
-  first.medium = medium::constant("", 1.376);
-  model.surfaces = {first, {}};
-  model.surfaces.back().medium = medium::air();
-  const auto compiled = scene::compile(model);
-  if (!compiled.scene) {
-    for (const auto& finding : compiled.findings.all()) fmt::print(stderr, "{}\n", prescription::format(finding));
-    std::exit(1);
-  }
-  scene::Scene scene = *compiled.scene;
-  const scene::Surface surface = scene.surface(1);
-  scene.surfaces.assign(copies, surface);
-  for (std::size_t i = 1; i < copies; ++i) scene.surfaces[i].local_from_previous.translation.z = -gap;
-  scene.primary.index.clear();
-  for (std::size_t i = 0; i <= copies; ++i) scene.primary.index.push_back(i % 2 == 0 ? 1 : 1.376);
-  return scene;
-}
-
-trace::RayBatch make_rays(const scene::Scene& scene, std::size_t ray_count, bool are_random) {
-  auto pupil = trace::pupil_points({}, static_cast<std::int64_t>(ray_count));
-  pupil.resize(ray_count);
-  trace::RayBatch rays = trace::launch(scene, scene.fields.front(), 1, pupil);
-  Random random;
-  for (std::size_t i = 0; are_random && i < ray_count; ++i) {
-    const auto position = random.in_disc(beam_radius);
-    auto direction = random.in_disc(std::sin(3 * std::numbers::pi / 180));
-    direction.z = std::sqrt(1 - dot(direction, direction));
-    rays.set(i, position, direction, 0);
-  }
-  return rays;
-}
+using bench::Medians, bench::median, bench::decimal, bench::now, bench::Subject;
 
 // Made once for all repetitions and calls.
-struct Subject {
-  scene::Scene scene;
-  trace::RayBatch rays;
-};
 const Subject& subject(const std::string& kind, int point_count, bool are_random) {
   static std::map<std::string, Subject> made;
   const std::string name = fmt::format("{} {} {}", kind, point_count, are_random);
   const auto found = made.find(name);
   if (found != made.end()) return found->second;
-  scene::Scene scene = make_scene(kind, point_count, point_count > 0 ? 1 : 8);
-  trace::RayBatch rays = make_rays(scene, point_count > 0 ? 1u << 20 : 1u << 16, are_random);
+  scene::Scene scene = bench::corneas(kind, point_count, point_count > 0 ? 1 : 8);
+  trace::RayBatch rays = bench::beam(scene, point_count > 0 ? 1u << 20 : 1u << 16, are_random);
   return made.emplace(name, Subject{std::move(scene), std::move(rays)}).first->second;
 }
 
@@ -270,6 +186,7 @@ std::string processor() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (bench::is_kernel_process(argc, argv)) return bench::run_kernel_process(argv);
   for (const Case& c : cases)
     for (const bool all : {false, true})
       benchmark::RegisterBenchmark((std::string(c.name) + (all ? all_threads : one_thread)).c_str(), [c, all](benchmark::State& state) {
@@ -283,6 +200,10 @@ int main(int argc, char** argv) {
         })->UseManualTime()->Unit(benchmark::kMillisecond);
   bench::register_preparation();
   bench::register_startup();
+  bench::register_limit();
+  bench::register_kernels();
+  bench::register_jobs();
+  bench::register_growth();
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   fmt::print(stderr, "{}; compiler {}\n", processor(), __VERSION__);
@@ -292,5 +213,9 @@ int main(int argc, char** argv) {
   print_beside_embree(keeper.medians);
   bench::print_preparation(keeper.medians);
   bench::print_startup(keeper.medians);
+  bench::print_limit(keeper.medians);
+  bench::print_kernels(keeper.medians);
+  bench::print_jobs(keeper.medians);
+  bench::print_growth(keeper.medians);
   return 0;
 }

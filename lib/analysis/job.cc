@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <numbers>
 #include <span>
 
+#include "lib/numerics/parallel.h"
 #include "lib/trace/launch.h"
 #include "lib/trace/trace.h"
 
@@ -14,8 +16,10 @@ namespace {
 
 using surface::Status;
 
-// Rays that travel together: few enough that a batch stays in the second-level cache, enough to occupy the threads.
+// Points of the pupil that all fields and wavelengths take before the next ones are made; and rays that travel together: few
+// enough that a batch stays in the second-level cache, more where several threads share them.
 constexpr std::int64_t portion = 1 << 15;
+constexpr std::size_t batch_size = 1 << 13;
 
 // Some rays over the pupil and many on its rim: a sample of those of any pattern.
 std::vector<trace::PupilPoint> pilot_points() {
@@ -135,16 +139,27 @@ std::vector<std::vector<JobResult>> run_jobs(std::span<const scene::Scene> scene
       const SpotFrames::Centre& centre = frames[static_cast<std::size_t>(task.scene - scenes.data())].centres[task.result->field];
       collectors.emplace_back(SpotImage(request.spot_image_size, first_pixel, centre.x, centre.y));
     }
+    // Each task has one thread, or some where there are few tasks; its rays are collected in their order.
+    const int threads = numerics::thread_count_of(request.thread_count);
+    const int threads_of_task = std::max(1, threads / static_cast<int>(numerics::worker_count(tasks.size(), threads)));
+    const std::size_t batch = threads_of_task > 1 ? portion : batch_size;
     trace::PupilStream stream(request.pattern, request.ray_count);
+    std::mutex counting;
     std::int64_t done = 0;
     const double all = static_cast<double>(stream.size()) * static_cast<double>(tasks.size());
-    for (std::vector<trace::PupilPoint> pupil; !(pupil = stream.next(portion)).empty();)
-      for (std::size_t i = 0; i < tasks.size(); ++i) {
-        const auto& [scene, result] = tasks[i];
-        collectors[i].add(traced(*scene, result->field, result->wavelength, pupil, request.thread_count));
-        done += static_cast<std::int64_t>(pupil.size());
-        if (progress) progress(static_cast<double>(done) / all);
-      }
+    for (std::vector<trace::PupilPoint> pupil; !(pupil = stream.next(portion)).empty();) {
+      numerics::share_blocks(tasks.size(), threads, [&] {
+        return [&](std::size_t i) {
+          const auto& [scene, result] = tasks[i];
+          for (std::size_t from = 0; from < pupil.size(); from += batch)
+            collectors[i].add(traced(*scene, result->field, result->wavelength,
+                                     std::span(pupil).subspan(from, std::min(batch, pupil.size() - from)), threads_of_task));
+          const std::lock_guard lock(counting);
+          done += static_cast<std::int64_t>(pupil.size());
+          if (progress) progress(static_cast<double>(done) / all);
+        };
+      });
+    }
     double pixel = 0;
     for (const SpotCollector& collector : collectors) pixel = std::max(pixel, collector.image().pixel_mm);
     for (std::size_t i = 0; i < tasks.size(); ++i) {

@@ -33,7 +33,19 @@ struct SpotImage {
   SpotImage(int image_size, double pixel, double x, double y);
   // A ray beyond the edge doubles the pixels until it lies inside.
   void add(double x, double y);
+  // The same for rays given from the centre, at most `most_at_once`.
+  static constexpr std::size_t most_at_once = 256;
+  void add_from_centre(const double* dx, const double* dy, std::size_t count);
   void double_pixels();
+
+ private:
+  // std::floor of what an int holds, without a call of the library.
+  static int floor_of(double value) {
+    const int towards_zero = static_cast<int>(value);
+    return towards_zero - (value < towards_zero ? 1 : 0);
+  }
+
+  double pixels_per_mm_;
 };
 
 class SpotCollector {
@@ -48,8 +60,10 @@ class SpotCollector {
   SpotImage image_with(double pixel_mm) const;
 
  private:
+  void add_block(const trace::RayBatch& rays, std::size_t from, std::size_t count);
+
   trace::StatusCounts rays_;
-  numerics::Sum x_, y_, squares_;  // about the image's centre
+  numerics::ColumnSum x_, y_, squares_;  // about the image's centre
   numerics::ConvexHull hull_;
   SpotImage image_;
 };

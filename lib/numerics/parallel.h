@@ -12,6 +12,14 @@
 
 namespace sagitta::numerics {
 
+// 0: as many threads as the machine runs.
+inline int thread_count_of(int asked) { return asked > 0 ? asked : static_cast<int>(std::max(1u, std::thread::hardware_concurrency())); }
+
+// How many threads share the blocks: one is worth starting for four of them or more.
+inline std::size_t worker_count(std::size_t block_count, int thread_count) {
+  return std::clamp<std::size_t>((block_count + 3) / 4, 1, static_cast<std::size_t>(thread_count_of(thread_count)));
+}
+
 // Calls make_worker() once on each thread, then its result with every number below block_count, once each in all.
 // thread_count 0: as many threads as the machine runs.
 template <class MakeWorker>
@@ -21,8 +29,7 @@ void share_blocks(std::size_t block_count, int thread_count, const MakeWorker& m
     auto worker = make_worker();
     for (std::size_t block; (block = next++) < block_count;) worker(block);
   };
-  std::size_t workers = thread_count > 0 ? static_cast<std::size_t>(thread_count) : std::max(1u, std::thread::hardware_concurrency());
-  workers = std::min(workers, (block_count + 3) / 4);  // a thread is worth starting for four blocks or more
+  const std::size_t workers = worker_count(block_count, thread_count);
   std::vector<std::jthread> helpers;
   try {
     for (std::size_t i = 1; i < workers; ++i) helpers.emplace_back(work);

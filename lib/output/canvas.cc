@@ -188,13 +188,19 @@ void Canvas::circle(double x, double y, double radius, double width, Rgb8 color,
   cairo_restore(context);
 }
 
-void Canvas::pixel(int x, int y, Rgb8 color) {
+void Canvas::pixels(int x, int y, int width, const std::vector<Rgb8>& colors) {
   cairo_surface_flush(cairo_->surface);
-  unsigned char* row = cairo_image_surface_get_data(cairo_->surface) +
-                       std::ptrdiff_t{y} * cairo_image_surface_get_stride(cairo_->surface);
-  const std::uint32_t packed = (std::uint32_t{color[0]} << 16U) | (std::uint32_t{color[1]} << 8U) | color[2];
-  std::memcpy(row + std::ptrdiff_t{4} * x, &packed, sizeof packed);
-  cairo_surface_mark_dirty_rectangle(cairo_->surface, x, y, 1, 1);
+  unsigned char* data = cairo_image_surface_get_data(cairo_->surface);
+  if (data == nullptr || width < 1) return;
+  const std::ptrdiff_t stride = cairo_image_surface_get_stride(cairo_->surface);
+  const int height = static_cast<int>(colors.size()) / width;
+  auto color = colors.begin();
+  for (int j = 0; j < height; ++j)
+    for (int i = 0; i < width; ++i, ++color) {
+      const std::uint32_t packed = (std::uint32_t{(*color)[0]} << 16U) | (std::uint32_t{(*color)[1]} << 8U) | (*color)[2];
+      std::memcpy(data + (y + j) * stride + std::ptrdiff_t{4} * (x + i), &packed, sizeof packed);
+    }
+  cairo_surface_mark_dirty_rectangle(cairo_->surface, x, y, width, height);
 }
 
 Raster Canvas::raster() const {

@@ -39,7 +39,7 @@ class Canvas {
   void frame(const Box& box, Rgb8 color);  // one pixel wide, just outside the box
   void line(double x1, double y1, double x2, double y2, double width, Rgb8 color, bool dashed = false);
   void circle(double x, double y, double radius, double width, Rgb8 color, bool dashed, const Box& inside);
-  void pixel(int x, int y, Rgb8 color);
+  void pixels(int x, int y, int width, const std::vector<Rgb8>& colors);  // row by row, from the corner (x, y) on
 
   Raster raster() const;
 

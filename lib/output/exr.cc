@@ -98,6 +98,7 @@ std::string encode(const std::string& path, std::span<const ExrPart> parts) {
     header.setName(part.name);
     header.setType(Imf::SCANLINEIMAGE);
     header.compression() = Imf::ZIP_COMPRESSION;
+    header.zipCompressionLevel() = 1;  // half the time, for a fifth more bytes
     for (const ExrChannel& channel : part.channels)
       header.channels().insert(
           channel.name,

@@ -172,6 +172,10 @@ void PanelLayout::draw_map(Canvas& canvas, int x, int y) const {
     const auto last = static_cast<int>((std::int64_t{i} + 1) * count / plot);
     return std::pair{first, std::max(last, first + 1)};
   };
+  std::vector<Rgb8> colors;
+  colors.reserve(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
+  float last = 0;  // neighbours often show one value
+  Rgb8 last_color = color_of(last);
   for (int j = 0; j < height_; ++j) {
     const auto [top, bottom] = covered(j, height_, map.height);
     for (int i = 0; i < width_; ++i) {
@@ -183,9 +187,11 @@ void PanelLayout::draw_map(Canvas& canvas, int x, int y) const {
                                          static_cast<std::size_t>(column)];
           if (!(std::abs(value) <= std::abs(shown)) && !std::isnan(value)) shown = value;
         }
-      canvas.pixel(x + i, y + j, color_of(shown));
+      if (shown != last) last_color = color_of(last = shown);  // and so for NaN
+      colors.push_back(last_color);
     }
   }
+  canvas.pixels(x, y, width_, colors);
 }
 
 void PanelLayout::draw_axes(Canvas& canvas, const Box& plot) const {

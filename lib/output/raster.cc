@@ -16,6 +16,7 @@ WriteResult write_png(const std::string& path, const Raster& raster) {
   image.width = static_cast<png_uint_32>(raster.width);
   image.height = static_cast<png_uint_32>(raster.height);
   image.format = PNG_FORMAT_RGB;
+  image.flags = PNG_IMAGE_FLAG_FAST;  // a third of the time, for a third more bytes
   if (raster.width < 1 || raster.height < 1 || raster.rgb.size() != PNG_IMAGE_SIZE(image))
     return {path + ": the picture is empty"};
 

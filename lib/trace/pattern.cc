@@ -9,10 +9,14 @@
 namespace sagitta::trace {
 namespace {
 
-std::int64_t hexapolar_size(std::int64_t at_least) {
+constexpr std::int64_t ring_stride = 16;
+
+std::int64_t hexapolar_size(std::int64_t rings) { return 1 + 3 * rings * (rings + 1); }
+
+std::int64_t hexapolar_rings(std::int64_t at_least) {
   std::int64_t rings = 0;
-  while (1 + 3 * rings * (rings + 1) < at_least) ++rings;
-  return 1 + 3 * rings * (rings + 1);
+  while (hexapolar_size(rings) < at_least) ++rings;
+  return rings;
 }
 
 // Odd integers over the side: symmetric to the last bit.
@@ -60,17 +64,21 @@ std::optional<Pattern> parse_pattern(std::string_view text) {
 
 PupilStream::PupilStream(const Pattern& pattern, std::int64_t at_least)
     : pattern_(pattern), size_(at_least), generator_(pattern.seed) {
-  if (pattern.kind == PatternKind::hexapolar) size_ = hexapolar_size(at_least);
+  if (pattern.kind == PatternKind::hexapolar) size_ = hexapolar_size(ring_ = first_ring_ = rings_ = hexapolar_rings(at_least));
   if (pattern.kind == PatternKind::square) size_ = square_size(side_ = square_side(at_least));
 }
 
 PupilPoint PupilStream::point() {
   switch (pattern_.kind) {
     case PatternKind::hexapolar: {
-      if (given_ > 0 && ++place_ >= 6 * ring_) ++ring_, place_ = 0;
+      if (ring_ > 0 && place_ == 6 * ring_) {
+        place_ = 0;
+        ring_ -= ring_stride;
+        if (ring_ < 1) ring_ = --first_ring_ > rings_ - ring_stride ? first_ring_ : 0;
+      }
       if (ring_ == 0) return {0, 0};
       const double radius = std::sqrt((1 + 3 * static_cast<double>(ring_ * ring_)) / static_cast<double>(size_));
-      const double angle = 2 * std::numbers::pi * static_cast<double>(place_) / static_cast<double>(6 * ring_);
+      const double angle = 2 * std::numbers::pi * static_cast<double>(place_++) / static_cast<double>(6 * ring_);
       return {radius * std::cos(angle), radius * std::sin(angle)};
     }
     case PatternKind::square:

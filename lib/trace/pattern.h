@@ -2,7 +2,8 @@
 // Patterns of points over the unit disc of the pupil.
 //
 //   hexapolar     the centre and rings of 6, 12, 18, ... points; ring i has the radius sqrt((1 + 3 i^2)/count), so that
-//                 every point stands for the same area
+//                 every point stands for the same area. From the outermost ring inwards, every 16th, then those that are left,
+//                 the centre last: so the first rays reach about as far as all will, and what lies inside needs no further look
 //   square        the points of a square grid, centred on cells, that lie in the disc
 //   random:SEED   uniform over the disc; the same points for the same seed on every machine
 //   fan_x, fan_y  evenly from -1 to 1 along x or y, rim included
@@ -45,6 +46,7 @@ class PupilStream {
   Pattern pattern_;
   std::int64_t size_ = 0, given_ = 0;
   std::int64_t ring_ = 0, place_ = 0;  // hexapolar: the ring and the place on it; square: the row and the column
+  std::int64_t rings_ = 0, first_ring_ = 0;  // hexapolar: how many, and where the present sweep began
   std::int64_t side_ = 0;              // square: points a side
   std::mt19937_64 generator_;
 };

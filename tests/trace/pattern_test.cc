@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 namespace sagitta::trace {
@@ -55,6 +56,21 @@ TEST(Pattern, square_grid_is_the_coarsest_that_is_large_enough) {
 TEST(Pattern, all_points_lie_in_the_unit_disc) {
   for (const Pattern pattern : {Pattern{PatternKind::hexapolar}, {PatternKind::square}, {PatternKind::random, 3}, {PatternKind::fan_x}, {PatternKind::fan_y}})
     for (const PupilPoint& p : pupil_points(pattern, 1000)) EXPECT_LE(std::hypot(p.x, p.y), 1);
+}
+
+// Ring i has 6 i points, each ring stands whole and once; the rim comes first and the centre last.
+TEST(Pattern, hexapolar_rings_are_whole_and_come_once) {
+  for (const std::int64_t at_least : {1, 7, 1000, 2000, 10000}) {  // fewer rings than a sweep steps over, and more
+    const auto points = pupil_points({PatternKind::hexapolar}, at_least);
+    const auto count = static_cast<double>(points.size());
+    std::map<long, int> points_of_ring;
+    for (const PupilPoint& p : points) ++points_of_ring[std::lround(std::sqrt(std::max(0.0, ((p.x * p.x + p.y * p.y) * count - 1) / 3)))];
+    const long rings = std::lround((std::sqrt(12 * count - 3) - 3) / 6);  // count = 1 + 3 k (k + 1)
+    EXPECT_EQ(points_of_ring.size(), static_cast<std::size_t>(rings + 1));
+    for (const auto& [ring, how_many] : points_of_ring) EXPECT_EQ(how_many, ring == 0 ? 1 : 6 * ring) << ring;
+    EXPECT_EQ(points.back().x, 0);
+    EXPECT_NEAR(points.front().x, rings == 0 ? 0 : std::sqrt((1 + 3.0 * static_cast<double>(rings * rings)) / count), 1e-15);
+  }
 }
 
 // Every point stands for the same area: the means of r^2 and r^4 over the disc are 1/2 and 1/3. With ring i at

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// One ray through one surface, in the surface's frame: to the hit, past its apertures, and on in the new direction. T is a
+// double, or several in lanes (numerics/lanes.h), and everything in it is in select form. What a surface does not have is
+// left out when the step is compiled: OPL, apertures, a deflection.
+#pragma once
+
+#include "lib/surface/refraction.h"
+#include "lib/trace/ray_batch.h"
+
+namespace sagitta::trace {
+
+enum class Deflection { none, refract, reflect };
+
+struct StepKind {
+  Deflection deflection;
+  bool has_opl, has_apertures;
+};
+
+// The surface's plain numbers.
+struct StepSetting {
+  double index_before;
+  surface::IndexRatio<double> ratio;
+  double outer_squared, inner_squared;  // of the semi-diameters
+  int surface_number;
+};
+
+template <class T>
+struct Ray {
+  Vec3<T> position, direction;
+  T opl, ended;  // as in RayBatch
+};
+
+// A ray that travels, from the place where it entered the surface's frame, by its crossing; others stay as they are.
+template <StepKind kind, bool has_unit_normals, class T>
+Ray<T> step(const StepSetting& setting, const Ray<T>& ray, const surface::Crossing<T>& crossing) {
+  using numerics::all, numerics::select;
+  using Verdict = surface::StatusIn<T>;
+  const auto travels = ray.ended == T(0);
+  const auto met = crossing.status == Status::ok;
+  const Vec3<T>&hit = crossing.point, &d = ray.direction;
+
+  auto open = met;
+  if constexpr (kind.has_apertures) {
+    const T r_squared = hit.x * hit.x + hit.y * hit.y;
+    open = (r_squared <= T(setting.outer_squared)) & !(r_squared < T(setting.inner_squared));
+  }
+  const surface::IndexRatio<T> ratio{T(setting.ratio.mu), T(setting.ratio.one_minus_mu_squared)};
+  Vec3<T> out = d;
+  if constexpr (kind.deflection == Deflection::refract) out = surface::refract<has_unit_normals>(d, crossing.normal, crossing.along, ratio);
+  if constexpr (kind.deflection == Deflection::reflect) out = surface::reflect<has_unit_normals>(d, crossing.normal, crossing.along);
+  const auto transmitted = out.x == out.x;  // not NaN
+
+  const auto moves = travels & met, turns = moves & open & transmitted;
+  const T opl = kind.has_opl ? ray.opl + T(setting.index_before) * crossing.path : ray.opl;
+  if (all(turns)) return {hit, out, opl, ray.ended};  // what follows is for those that do not go on
+  const auto chosen = [](const auto& condition, const Vec3<T>& a, const Vec3<T>& b) {
+    return Vec3<T>{select<T>(condition, a.x, b.x), select<T>(condition, a.y, b.y), select<T>(condition, a.z, b.z)};
+  };
+  Ray<T> after{chosen(moves, hit, ray.position), chosen(turns, out, d), select<T>(moves, opl, ray.opl), ray.ended};
+  const T clipped(static_cast<int>(Status::clipped)), reflected(static_cast<int>(Status::total_reflection));
+  const T why_not = select<T>(met, select<T>(open, reflected, clipped), Verdict::number(crossing.status));
+  after.ended = select<T>(turns | !travels, ray.ended, T(ending(setting.surface_number, Status::ok)) + why_not);
+  return after;
+}
+
+}  // namespace sagitta::trace
