@@ -23,4 +23,59 @@ inline InstructionSet instruction_set() {
   return chosen;
 }
 
+// Calls work.operator()<n>() in a function made for these instructions, with n the doubles that their vectors hold: 2, 4 or
+// 8. Only what is drawn into that function becomes such instructions; the rest is code for any machine. The compiler decides
+// what that is; `flat` draws in everything, as numerics/lanes.h needs it.
+namespace chosen_instructions {
+template <class Work>
+[[gnu::noinline]] void run_for_any(const Work& work) {
+  work.template operator()<2>();
+}
+template <class Work>
+[[gnu::noinline, gnu::flatten]] void run_flat_for_any(const Work& work) {
+  work.template operator()<2>();
+}
+#if defined(__x86_64__)
+template <class Work>
+[[gnu::noinline, gnu::target("arch=x86-64-v3")]] void run_for_v3(const Work& work) {
+  work.template operator()<4>();
+}
+template <class Work>
+[[gnu::noinline, gnu::flatten, gnu::target("arch=x86-64-v3")]] void run_flat_for_v3(const Work& work) {
+  work.template operator()<4>();
+}
+template <class Work>
+[[gnu::noinline, gnu::target("arch=x86-64-v4")]] void run_for_v4(const Work& work) {
+  work.template operator()<8>();
+}
+template <class Work>
+[[gnu::noinline, gnu::flatten, gnu::target("arch=x86-64-v4")]] void run_flat_for_v4(const Work& work) {
+  work.template operator()<8>();
+}
+#endif
+}  // namespace chosen_instructions
+
+template <class Work>
+void with_chosen_instructions(const Work& work) {
+#if defined(__x86_64__)
+  switch (instruction_set()) {
+    case InstructionSet::x86_64_v4: return chosen_instructions::run_for_v4(work);
+    case InstructionSet::x86_64_v3: return chosen_instructions::run_for_v3(work);
+    case InstructionSet::any: break;
+  }
+#endif
+  chosen_instructions::run_for_any(work);
+}
+template <class Work>
+void with_chosen_instructions_flat(const Work& work) {
+#if defined(__x86_64__)
+  switch (instruction_set()) {
+    case InstructionSet::x86_64_v4: return chosen_instructions::run_flat_for_v4(work);
+    case InstructionSet::x86_64_v3: return chosen_instructions::run_flat_for_v3(work);
+    case InstructionSet::any: break;
+  }
+#endif
+  chosen_instructions::run_flat_for_any(work);
+}
+
 }  // namespace sagitta::numerics

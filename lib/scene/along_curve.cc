@@ -27,7 +27,8 @@ std::vector<std::uint32_t> along_curve(const std::vector<numerics::Vec3<double>>
     v = (v | (v << 2)) & 0x3333333333333333;
     return (v | (v << 1)) & 0x5555555555555555;
   };
-  const auto cells_per_mm = [](double low, double high) { return high > low ? 0xFFFFFFFF / (high - low) : 0; };
+  // Finite for the least box too, so that nothing times 0 is NaN.
+  const auto cells_per_mm = [](double low, double high) { return high > low ? std::min(0xFFFFFFFF / (high - low), 1e300) : 0; };
   const double columns_per_mm = cells_per_mm(box.low_x, box.high_x), rows_per_mm = cells_per_mm(box.low_y, box.high_y);
   const auto cell = [](double position) { return static_cast<std::uint32_t>(std::min(position, 4294967295.0)); };
   struct Key {

@@ -41,7 +41,7 @@ surface::Shape compile_shape(const prescription::Shape& given, numerics::Arena& 
       if (S::kind == given.kind) result = S::from(given.parameters, arena);
     }
   });
-  return result;
+  return surface::least_form(result);
 }
 
 // Frames: the axis is straight; a surface's vertex stands on it, is moved by decenter, then turned about its new axes.

@@ -29,6 +29,12 @@ struct Surface {
   double vertex_curvature = 0;                          // 1/mm, y-z section
   double semi_diameter = std::numeric_limits<double>::infinity();
   double inner_semi_diameter = 0;
+
+  bool has_apertures() const { return std::isfinite(semi_diameter) || inner_semi_diameter > 0; }
+  // A plane in one medium that stops no ray, but for those parallel to it: a dummy.
+  bool does_nothing(double index_before, double index_after) const {
+    return std::holds_alternative<surface::Plane>(shape) && index_before == index_after && !mirror && !image && !has_apertures();
+  }
 };
 
 // The indices of all gaps at one wavelength.

@@ -36,6 +36,29 @@
 
 namespace sagitta::surface {
 
+// The point of a line from which the vertex is nearest.
+template <class T>
+Vec3<T> nearest_to_vertex(const Vec3<T>& start, const Vec3<T>& d) {
+  return start + -dot(start, d) * d;
+}
+
+// (5), from the line's p and (3). axial = (1+K) c.
+template <class T>
+Crossing<T> crossing_of_conic(const Vec3<T>& start, const Vec3<T>& p, const Vec3<T>& d, const T& c, const T& axial, const T& A, const T& B, const T& C) {
+  using std::sqrt;
+  const T root = sqrt(B * B - A * C);  // NaN: the line passes by
+  const auto is_backward = d.z < T(0);
+  const T along = negate_where<T>(is_backward, root), s_B = negate_where<T>(is_backward, B);
+  const auto is_near = s_B >= T(0);
+  const T t = select<T>(is_near, C, B - along) / select<T>(is_near, B + along, A);  // (5)
+  const Vec3<T> point = p + t * d;
+  const T nz = T(1) - axial * point.z;                 // (4)
+  const auto hit = (nz > T(0)) & (t - t == T(0));      // t - t: neither NaN nor infinite
+  const T path = dot(point - start, d);  // formed whether or not there is a hit: loops over rays have no branches
+  return {select<T>(hit, path, not_a_number<T>()), point, {-c * point.x, -c * point.y, nz}, along,
+          StatusIn<T>::either(hit, Status::ok, Status::missed)};
+}
+
 struct Conic {
   static constexpr std::string_view kind = "conic";
   static constexpr std::array keys{
@@ -71,22 +94,12 @@ struct Conic {
 
   template <class T>
   Crossing<T> meet(const Vec3<T>& start, const Vec3<T>& d) const {
-    using std::sqrt;
     const T c = curvature, one_plus_K = T(1) + T(conic_constant);
-    const T e = -dot(start, d);
-    const Vec3<T> p = start + e * d;
+    const Vec3<T> p = nearest_to_vertex(start, d);
     const T A = c * (d.x * d.x + d.y * d.y + one_plus_K * d.z * d.z);  // (3)
     const T B = d.z - c * (d.x * p.x + d.y * p.y + one_plus_K * d.z * p.z);
     const T C = c * (p.x * p.x + p.y * p.y + one_plus_K * p.z * p.z) - T(2) * p.z;
-    const T root = sqrt(B * B - A * C);  // NaN: the line passes by
-    const T along = d.z < T(0) ? -root : root;
-    const T s_B = d.z < T(0) ? -B : B;
-    const T t = (s_B >= T(0) ? C : B - along) / (s_B >= T(0) ? B + along : A);  // (5)
-    const Vec3<T> point = p + t * d;
-    const T nz = T(1) - one_plus_K * c * point.z;                             // (4)
-    const bool hit = (nz > T(0)) & (t - t == T(0));                              // t - t: neither NaN nor infinite
-    const T path = dot(point - start, d);  // formed whether or not there is a hit: loops over rays have no branches
-    return {hit ? path : not_a_number<T>(), point, {-c * point.x, -c * point.y, nz}, along, hit ? Status::ok : Status::missed};
+    return crossing_of_conic(start, p, d, c, T(one_plus_K * c), A, B, C);
   }
 };
 

@@ -13,22 +13,46 @@
 //   };
 //
 // T is double in the tracer, a 50-digit type in the rounding oracle. The parameters are doubles in both: they are
-// taken as exact. Everything is in the surface's local frame, in mm.
+// taken as exact. Everything is in the surface's local frame, in mm. Shapes whose crossing has a closed form take several
+// doubles as one T (numerics/lanes.h), and choose by select() there; one whose normals are unit vectors says so:
+//
+//     static constexpr bool has_unit_normals = true;
 #pragma once
 
 #include <limits>
 
+#include "lib/numerics/lanes.h"
 #include "lib/numerics/vec3.h"
 #include "lib/surface/status.h"
 
 namespace sagitta::surface {
 
-using numerics::Vec3;
+using numerics::Vec3, numerics::negate_where, numerics::select;
 
 // The gradient of the sag, (dz/dx, dz/dy).
 template <class T>
 struct Gradient {
   T x, y;
+};
+
+// The status of a crossing; of several in lanes, the status of each.
+template <class T>
+struct StatusIn {
+  using Type = Status;
+  static Status either(bool condition, Status yes, Status no) { return condition ? yes : no; }
+  static T number(Status status) { return T(static_cast<int>(status)); }
+};
+template <int n>
+struct StatusIn<numerics::Lanes<n>> {
+  using T = numerics::Lanes<n>;
+  struct Type {
+    T numbers;
+    friend numerics::Mask<n> operator==(const Type& a, Status b) { return a.numbers == StatusIn<double>::number(b); }
+  };
+  static Type either(const numerics::Mask<n>& condition, Status yes, Status no) {
+    return {select<T>(condition, StatusIn<double>::number(yes), StatusIn<double>::number(no))};
+  }
+  static T number(const Type& status) { return status.numbers; }
 };
 
 // Where the line p + t d (|d| = 1) meets a surface.
@@ -39,7 +63,7 @@ struct Crossing {
   Vec3<T> normal;   // not normalised; its z component is positive (the side that light enters when it travels to +z is
                     // the side the normal does not point to)
   T along;          // d . normal, from the cheapest accurate source; its sign tells the side the ray comes from
-  Status status = Status::ok;
+  typename StatusIn<T>::Type status;
 };
 
 template <class T>

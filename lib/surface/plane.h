@@ -10,6 +10,7 @@
 namespace sagitta::surface {
 
 struct Plane {
+  static constexpr bool has_unit_normals = true;
   static constexpr std::string_view kind = "plane";
   static constexpr std::array<numerics::Key, 0> keys{};
 
@@ -31,8 +32,9 @@ struct Plane {
   template <class T>
   Crossing<T> meet(const Vec3<T>& p, const Vec3<T>& d) const {
     const T t = -p.z / d.z;
-    const bool hit = t - t == T(0);  // neither NaN nor infinite
-    return {hit ? t : not_a_number<T>(), {p.x + t * d.x, p.y + t * d.y, T(0)}, {T(0), T(0), T(1)}, d.z, hit ? Status::ok : Status::missed};
+    const auto hit = t - t == T(0);  // neither NaN nor infinite
+    return {select<T>(hit, t, not_a_number<T>()), {p.x + t * d.x, p.y + t * d.y, T(0)}, {T(0), T(0), T(1)}, d.z,
+            StatusIn<T>::either(hit, Status::ok, Status::missed)};
   }
 };
 

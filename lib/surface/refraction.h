@@ -7,6 +7,7 @@
 // w/|n| is the cosine of refraction: a negative radicand is total reflection and gives NaN. The textbook form
 // gamma = (s w - mu d.n)/|n|^2 is (1) multiplied by its conjugate; (1) keeps its digits where the indices are nearly
 // equal (1 - mu^2 -> 0) and costs one root and one division. 1 - mu^2 is formed as (n'-n)(n'+n)/n'^2.
+// Where |n| = 1 the textbook form costs no division, and its loss, eps in gamma, is that of the sum mu d + gamma n itself.
 //
 //   reflection: d' = d - 2 (d.n)/|n|^2 n                                                                           (2)
 //
@@ -19,6 +20,7 @@
 
 #include <cmath>
 
+#include "lib/numerics/lanes.h"
 #include "lib/numerics/vec3.h"
 
 namespace sagitta::surface {
@@ -43,20 +45,29 @@ numerics::Vec3<T> with_unit_length(const numerics::Vec3<T>& d) {
 }
 
 // `along` is d.n. NaN in every component: total reflection.
-template <class T>
+template <bool has_unit_normal = false, class T>
 numerics::Vec3<T> refract(const numerics::Vec3<T>& d, const numerics::Vec3<T>& normal, const T& along,
                           const IndexRatio<T>& ratio) {
   using std::sqrt;
   const T mu = ratio.mu, q = ratio.one_minus_mu_squared;
   const T v = mu * along;
-  const T w = sqrt(q * dot(normal, normal) + v * v);
-  const T magnitude = q / (w + (along < T(0) ? -v : v));  // (1)
-  return with_unit_length(mu * d + (along < T(0) ? -magnitude : magnitude) * normal);
+  const auto is_backward = along < T(0);
+  T gamma;
+  if constexpr (has_unit_normal) {
+    const T w = sqrt(q + v * v);
+    gamma = numerics::negate_where<T>(is_backward, w) - v;
+  } else {
+    const T w = sqrt(q * dot(normal, normal) + v * v);
+    const T magnitude = q / (w + numerics::negate_where<T>(is_backward, v));  // (1)
+    gamma = numerics::negate_where<T>(is_backward, magnitude);
+  }
+  return with_unit_length(mu * d + gamma * normal);
 }
 
-template <class T>
+template <bool has_unit_normal = false, class T>
 numerics::Vec3<T> reflect(const numerics::Vec3<T>& d, const numerics::Vec3<T>& normal, const T& along) {
-  return with_unit_length(d - (T(2) * along / dot(normal, normal)) * normal);  // (2)
+  if constexpr (has_unit_normal) return with_unit_length(d - (T(2) * along) * normal);
+  else return with_unit_length(d - (T(2) * along / dot(normal, normal)) * normal);  // (2)
 }
 
 }  // namespace sagitta::surface

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The closed list of shapes. A new shape is one file and one line here. Those with a `kind` and `keys` are named in
-// prescriptions; the interpolations of points all come from the kind `delaunay` of Facets.
+// prescriptions; the interpolations of points all come from the kind `delaunay` of Facets, and a sphere is a conic of K = 0.
 #pragma once
 
 #include <variant>
@@ -10,12 +10,24 @@
 #include "lib/surface/patches.h"
 #include "lib/surface/plane.h"
 #include "lib/surface/radial.h"
+#include "lib/surface/sphere.h"
 #include "lib/surface/zernike.h"
 
 namespace sagitta::surface {
 
-using Shape = std::variant<Plane, Conic, Zernike, Facets, Patches, RadialPatches<RadialFunction::cubic>,
+using Shape = std::variant<Plane, Sphere, Conic, Zernike, Facets, Patches, RadialPatches<RadialFunction::cubic>,
                            RadialPatches<RadialFunction::thin_plate>, RadialPatches<RadialFunction::multiquadric>>;
+
+// The shape of fewest operations that is the same surface: a Zernike surface without terms is its conic, a conic of K = 0 a
+// sphere, one of curvature 0 a plane.
+inline Shape least_form(const Shape& shape) {
+  if (const auto* zernike = std::get_if<Zernike>(&shape); zernike && zernike->coefficient_sum == 0) return least_form(zernike->base);
+  if (const auto* conic = std::get_if<Conic>(&shape)) {
+    if (conic->curvature == 0) return Plane{};
+    if (conic->conic_constant == 0) return Sphere{conic->curvature};
+  }
+  return shape;
+}
 
 // Calls visit with a default value of every shape that prescriptions name, in order: visit(Plane{}), visit(Conic{}), ...
 template <class Visit, class... Shapes>

@@ -1,219 +1,200 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lib/trace/kernel.h"
 
+#include <algorithm>
 #include <type_traits>
 
 #include "lib/numerics/instruction_set.h"
-#include "lib/surface/refraction.h"
+#include "lib/numerics/lanes.h"
+#include "lib/trace/step.h"
 
 namespace sagitta::trace {
 namespace {
 
-using numerics::InstructionSet, numerics::instruction_set;
+using numerics::InstructionSet, numerics::instruction_set, numerics::Lanes, numerics::select;
+using Transform = numerics::RigidTransform<double>;
 
-enum class Deflection { none, refract, reflect };
-
-// The surface's plain numbers, read once per block.
-struct Setting {
-  numerics::RigidTransform<double> local_from_previous;
-  double index_before;
-  surface::IndexRatio<double> ratio;
-  double outer_squared, inner_squared;
-  int surface_number;
-};
-
-// Rays from the frame before into the surface's own.
-template <bool centred>
-[[gnu::always_inline]] inline void to_local(const Setting& setting, Vec3<double>& start, Vec3<double>& d) {
-  if constexpr (centred) {
-    start.z += setting.local_from_previous.translation.z;
-  } else {
-    start = setting.local_from_previous * start;
-    d = setting.local_from_previous.rotation * d;
-  }
-}
-
-// A shape whose crossings with the block's rays are known already.
-struct Met {
-  const surface::BlockOfCrossings* crossings;
-
-  [[gnu::always_inline]] surface::Crossing<double> at(int i, const Vec3<double>& d) const {
-    const surface::BlockOfCrossings& at = *crossings;
-    const double a = at.slope_x[i], b = at.slope_y[i];
-    return {at.path[i], {at.x[i], at.y[i], at.z[i]}, {-a, -b, 1}, d.z - a * d.x - b * d.y, static_cast<Status>(at.status[i])};
-  }
-};
-
-template <class Shape>
-[[gnu::always_inline]] inline surface::Crossing<double> meet_one(const Shape& shape, const Vec3<double>& start, const Vec3<double>& d, int i) {
-  if constexpr (std::is_same_v<Shape, Met>)
-    return shape.at(i, d);
-  else
-    return shape.meet(start, d);
-}
-
-template <bool centred, int doubles_in_vector, class Shape>
-[[gnu::always_inline]] inline void meet_block(const Shape& shape, const Setting& setting, const RayColumns& rays,
-                                              const int ray_count, surface::BlockOfCrossings& crossings) {
-  surface::BlockOfLines lines;
-  lines.count = ray_count;
-#pragma GCC ivdep
-  for (int i = 0; i < ray_count; ++i) {
-    Vec3<double> start{rays.x[i], rays.y[i], rays.z[i]}, d{rays.l[i], rays.m[i], rays.n[i]};
-    to_local<centred>(setting, start, d);
-    lines.x[i] = start.x, lines.y[i] = start.y, lines.z[i] = start.z;
-    lines.l[i] = d.x, lines.m[i] = d.y, lines.n[i] = d.z;
-  }
-  for (int i = 0; i < ray_count; ++i) lines.travels[i] = rays.ended[i] == 0;
-  if constexpr (requires { shape.template meet_block<doubles_in_vector>(lines, crossings); })
-    shape.template meet_block<doubles_in_vector>(lines, crossings);
-  else
-    shape.meet_block(lines, crossings);
-}
-
-template <bool centred, Deflection deflection, class Shape>
-[[gnu::always_inline]] inline void advance_block(const Shape& shape, const Setting& setting, const RayColumns& rays,
-                                                 const int ray_count) {
-#pragma GCC ivdep
-  for (int i = 0; i < ray_count; ++i) {
-    const std::int32_t ended = rays.ended[i];
-    const double opl = rays.opl[i];
-    const bool travels = ended == 0;
-    Vec3<double> start{rays.x[i], rays.y[i], rays.z[i]}, d{rays.l[i], rays.m[i], rays.n[i]};
-    const Vec3<double> old_start = start, old_d = d;
-    to_local<centred>(setting, start, d);
-
-    const surface::Crossing<double> crossing = meet_one(shape, start, d, i);
-    const bool met = crossing.status == Status::ok;
-    const Vec3<double> hit = crossing.point;
-    const double r_squared = hit.x * hit.x + hit.y * hit.y;
-    const bool open = (r_squared <= setting.outer_squared) & !(r_squared < setting.inner_squared);
-
-    Vec3<double> out = d;
-    if constexpr (deflection == Deflection::refract)
-      out = surface::refract(d, crossing.normal, crossing.along, setting.ratio);
-    if constexpr (deflection == Deflection::reflect) out = surface::reflect(d, crossing.normal, crossing.along);
-    const bool transmitted = out.x == out.x;  // not NaN
-
-    const bool moves = travels & met, turns = moves & open & transmitted;
-    rays.x[i] = moves ? hit.x : travels ? start.x : old_start.x;
-    rays.y[i] = moves ? hit.y : travels ? start.y : old_start.y;
-    rays.z[i] = moves ? hit.z : travels ? start.z : old_start.z;
-    rays.l[i] = turns ? out.x : travels ? d.x : old_d.x;
-    rays.m[i] = turns ? out.y : travels ? d.y : old_d.y;
-    rays.n[i] = turns ? out.z : travels ? d.z : old_d.z;
-    rays.opl[i] = moves ? opl + setting.index_before * crossing.path : opl;
-    const Status why_not = !met ? crossing.status : !open ? Status::clipped : Status::total_reflection;
-    rays.ended[i] = turns | !travels ? ended : ending(setting.surface_number, why_not);
-  }
-}
-
-// The same body for each instruction set. Without contraction all give the same bits. A function that the compiler did
-// not draw in is an ordinary one for every machine, so nothing can trap.
-template <bool centred, Deflection deflection, class Shape>
-[[gnu::noinline]] void advance_for_any(const Shape shape, const Setting setting, const RayColumns rays, const int ray_count) {
-  advance_block<centred, deflection>(shape, setting, rays, ray_count);
-}
-template <bool centred, class Shape>
-[[gnu::noinline]] void meet_for_any(const Shape shape, const Setting setting, const RayColumns rays, const int ray_count,
-                  surface::BlockOfCrossings& crossings) {
-  meet_block<centred, 2>(shape, setting, rays, ray_count, crossings);
-}
-#if defined(__x86_64__)
-template <bool centred, Deflection deflection, class Shape>
-[[gnu::target("arch=x86-64-v3")]] void advance_for_v3(const Shape shape, const Setting setting, const RayColumns rays,
-                                                      const int ray_count) {
-  advance_block<centred, deflection>(shape, setting, rays, ray_count);
-}
-template <bool centred, Deflection deflection, class Shape>
-[[gnu::target("arch=x86-64-v4")]] void advance_for_v4(const Shape shape, const Setting setting, const RayColumns rays,
-                                                      const int ray_count) {
-  advance_block<centred, deflection>(shape, setting, rays, ray_count);
-}
-template <bool centred, class Shape>
-[[gnu::target("arch=x86-64-v3")]] void meet_for_v3(const Shape shape, const Setting setting, const RayColumns rays,
-                                                   const int ray_count, surface::BlockOfCrossings& crossings) {
-  meet_block<centred, 4>(shape, setting, rays, ray_count, crossings);
-}
-template <bool centred, class Shape>
-[[gnu::target("arch=x86-64-v4")]] void meet_for_v4(const Shape shape, const Setting setting, const RayColumns rays,
-                                                   const int ray_count, surface::BlockOfCrossings& crossings) {
-  meet_block<centred, 8>(shape, setting, rays, ray_count, crossings);
-}
-#endif
-
-// Shapes that meet a block at once.
+// Shapes that meet a block at once, and those that meet ray by ray; the others have a closed form, in lanes.
 template <class Shape>
 concept MeetsBlocks = requires(const Shape& shape, surface::BlockOfLines& lines, surface::BlockOfCrossings& crossings) {
   shape.meet_block(lines, crossings);
 };
-
-// Shapes with a closed form become vectors; an iteration or a search runs ray by ray, where wider registers do not help.
 template <class Shape>
 inline constexpr bool has_closed_form =
-    std::is_same_v<Shape, surface::Plane> || std::is_same_v<Shape, surface::Conic> || std::is_same_v<Shape, Met>;
+    std::is_same_v<Shape, surface::Plane> || std::is_same_v<Shape, surface::Sphere> || std::is_same_v<Shape, surface::Conic>;
 
-template <bool centred, class Shape>
-void meet_with_chosen_instructions(const Shape& shape, const Setting& setting, const RayColumns& rays, int ray_count,
-                                   surface::BlockOfCrossings& crossings) {
-#if defined(__x86_64__)
-  switch (instruction_set()) {
-    case InstructionSet::x86_64_v4: return meet_for_v4<centred>(shape, setting, rays, ray_count, crossings);
-    case InstructionSet::x86_64_v3: return meet_for_v3<centred>(shape, setting, rays, ray_count, crossings);
-    case InstructionSet::any: break;
+// Crossings that are known already.
+struct Met {
+  const surface::BlockOfCrossings* crossings;
+
+  template <class T>
+  surface::Crossing<T> at(int i, const Vec3<T>& d) const {
+    const surface::BlockOfCrossings& at = *crossings;
+    const T a = T::load(at.slope_x + i), b = T::load(at.slope_y + i);
+    return {T::load(at.path + i), {T::load(at.x + i), T::load(at.y + i), T::load(at.z + i)}, {-a, -b, T(1)}, d.z - a * d.x - b * d.y,
+            {T::load(at.status + i)}};
   }
-#endif
-  meet_for_any<centred>(shape, setting, rays, ray_count, crossings);
+};
+template <class Shape>
+inline constexpr bool has_unit_normals = requires { Shape::has_unit_normals; };
+
+template <class T, bool has_opl>
+Ray<T> load(const RayColumns& rays, int i) {
+  return {{T::load(rays.x + i), T::load(rays.y + i), T::load(rays.z + i)}, {T::load(rays.l + i), T::load(rays.m + i), T::load(rays.n + i)},
+          has_opl ? T::load(rays.opl + i) : T(0), T::load(rays.ended + i)};
+}
+template <bool has_opl, class T>
+void store(const Ray<T>& ray, const RayColumns& rays, int i) {
+  ray.position.x.store(rays.x + i), ray.position.y.store(rays.y + i), ray.position.z.store(rays.z + i);
+  ray.direction.x.store(rays.l + i), ray.direction.y.store(rays.m + i), ray.direction.z.store(rays.n + i);
+  if constexpr (has_opl) ray.opl.store(rays.opl + i);
+  ray.ended.store(rays.ended + i);
 }
 
-template <bool centred, Deflection deflection, class Shape>
-void choose_instructions(const Shape& shape, const Setting& setting, const RayColumns& rays, int ray_count) {
-#if defined(__x86_64__)
-  if constexpr (has_closed_form<Shape>) {
-    switch (instruction_set()) {
-      case InstructionSet::x86_64_v4: return advance_for_v4<centred, deflection>(shape, setting, rays, ray_count);
-      case InstructionSet::x86_64_v3: return advance_for_v3<centred, deflection>(shape, setting, rays, ray_count);
-      case InstructionSet::any: break;
+// The last rays of a block, which do not fill a vector, in columns that do.
+class Remainder {
+ public:
+  static constexpr int capacity = 8;
+
+  [[gnu::noinline]] void take(const RayColumns& rays, int from, int count) {
+    for (int i = 0; i < capacity; ++i) ended_[i] = 1;
+    copy(rays, from, count, [](auto& ours, auto& theirs) { ours = theirs; });
+  }
+  [[gnu::noinline]] void put_back(const RayColumns& rays, int from, int count) {
+    copy(rays, from, count, [](auto& ours, auto& theirs) { theirs = ours; });
+  }
+  RayColumns columns(bool with_opl) { return {of_[0], of_[1], of_[2], of_[3], of_[4], of_[5], with_opl ? of_[6] : nullptr, ended_}; }
+
+ private:
+  template <class CopyOne>
+  void copy(const RayColumns& rays, int from, int count, const CopyOne& copy_one) {
+    double* const theirs[]{rays.x, rays.y, rays.z, rays.l, rays.m, rays.n, rays.opl};
+    for (int i = 0; i < count; ++i) {
+      for (int k = 0; k < 7; ++k)
+        if (theirs[k]) copy_one(of_[k][i], theirs[k][from + i]);
+      copy_one(ended_[i], rays.ended[from + i]);
     }
   }
-#endif
-  advance_for_any<centred, deflection>(shape, setting, rays, ray_count);
+
+  double of_[7][capacity]{};
+  std::int32_t ended_[capacity];
+};
+
+// Rays that have ended stay in their frame. (z + -0 is z, -0 too.)
+template <class T>
+void shift_along_z(double shift, Ray<T>& ray) {
+  ray.position.z = ray.position.z + select<T>(ray.ended == T(0), T(shift), T(-0.0));
 }
 
-template <bool centred, class Shape>
-void choose_deflection(Deflection deflection, const Shape& shape, const Setting& setting, const RayColumns& rays,
-                       int ray_count) {
-  if constexpr (MeetsBlocks<Shape>) {
-    surface::BlockOfCrossings crossings;
-    meet_with_chosen_instructions<centred>(shape, setting, rays, ray_count, crossings);
-    return choose_deflection<centred>(deflection, Met{&crossings}, setting, rays, ray_count);
-  } else switch (deflection) {
-    case Deflection::none: return choose_instructions<centred, Deflection::none>(shape, setting, rays, ray_count);
-    case Deflection::refract: return choose_instructions<centred, Deflection::refract>(shape, setting, rays, ray_count);
-    case Deflection::reflect: return choose_instructions<centred, Deflection::reflect>(shape, setting, rays, ray_count);
+// work(columns, i, k): on the n rays from columns[i] on, which are from k on in the block.
+template <int n, class Work>
+void for_each_vector(const RayColumns& rays, int ray_count, const Work& work) {
+  const int in_vectors = ray_count - ray_count % n;
+  const int left = ray_count - in_vectors;
+  Remainder remainder;
+  if (left > 0) remainder.take(rays, in_vectors, left);
+  for (const bool is_remainder : {false, true}) {  // in one loop, so that the work is there once
+    const RayColumns columns = is_remainder ? remainder.columns(rays.opl) : rays;
+    const int count = is_remainder ? left : in_vectors;
+    for (int i = 0; i < count; i += n) work(columns, i, is_remainder ? in_vectors : i);
   }
+  if (left > 0) remainder.put_back(rays, in_vectors, left);
+}
+
+template <StepKind kind, class Shape>
+void advance_by(const Shape& given_shape, const StepSetting& given_setting, double shift, const RayColumns& columns, int ray_count) {
+  numerics::with_chosen_instructions_flat([&]<int n>() {
+    using T = Lanes<n>;
+    const Shape shape = given_shape;  // copies, which no store to a column can change
+    const StepSetting setting = given_setting;
+    const double z_shift = shift;
+    for_each_vector<n>(columns, ray_count, [&](const RayColumns& rays, int i, int k) {
+      Ray<T> ray = load<T, kind.has_opl>(rays, i);
+      shift_along_z(z_shift, ray);
+      if constexpr (std::is_same_v<Shape, Met>)
+        store<kind.has_opl>(step<kind, false>(setting, ray, shape.at(k, ray.direction)), rays, i);
+      else
+        store<kind.has_opl>(step<kind, has_unit_normals<Shape>>(setting, ray, shape.meet(ray.position, ray.direction)), rays, i);
+    });
+  });
+}
+
+template <class Shape>
+void choose_step(Deflection deflection, bool has_apertures, const Shape& shape, const StepSetting& setting, double shift, const RayColumns& rays,
+                 int ray_count) {
+  const auto with_deflection = [&]<bool opl, bool apertures>() {
+    switch (deflection) {
+      case Deflection::none: return advance_by<StepKind{Deflection::none, opl, apertures}>(shape, setting, shift, rays, ray_count);
+      case Deflection::refract: return advance_by<StepKind{Deflection::refract, opl, apertures}>(shape, setting, shift, rays, ray_count);
+      case Deflection::reflect: return advance_by<StepKind{Deflection::reflect, opl, apertures}>(shape, setting, shift, rays, ray_count);
+    }
+  };
+  if (rays.opl)
+    has_apertures ? with_deflection.template operator()<true, true>() : with_deflection.template operator()<true, false>();
+  else
+    has_apertures ? with_deflection.template operator()<false, true>() : with_deflection.template operator()<false, false>();
+}
+
+// Into a frame that is turned, or moved across the axis.
+void enter(const Transform& given, const RayColumns& columns, int ray_count) {
+  numerics::with_chosen_instructions_flat([&]<int n>() {
+    using T = Lanes<n>;
+    const Transform transform = given;
+    for_each_vector<n>(columns, ray_count, [&](const RayColumns& rays, int i, int) {
+      Ray<T> ray = load<T, false>(rays, i);
+      const auto cast = [](const Vec3<double>& v) { return numerics::vec3_cast<T>(v); };
+      const numerics::RigidTransform<T> in_lanes{
+          {cast(transform.rotation.row_x), cast(transform.rotation.row_y), cast(transform.rotation.row_z)}, cast(transform.translation)};
+      const Vec3<T> position = in_lanes * ray.position, direction = in_lanes.rotation * ray.direction;
+      const auto travels = ray.ended == T(0);
+      const auto chosen = [&](const Vec3<T>& a, const Vec3<T>& b) {
+        return Vec3<T>{select<T>(travels, a.x, b.x), select<T>(travels, a.y, b.y), select<T>(travels, a.z, b.z)};
+      };
+      store<false>(Ray<T>{chosen(position, ray.position), chosen(direction, ray.direction), ray.opl, ray.ended}, rays, i);
+    });
+  });
+}
+
+template <class Shape>
+void meet(const Shape& shape, double shift, const RayColumns& rays, int ray_count, surface::BlockOfCrossings& crossings) {
+  surface::BlockOfLines lines;
+  lines.count = ray_count;
+  for (int i = 0; i < ray_count; ++i) {
+    lines.x[i] = rays.x[i], lines.y[i] = rays.y[i], lines.z[i] = rays.z[i] + shift;
+    lines.l[i] = rays.l[i], lines.m[i] = rays.m[i], lines.n[i] = rays.n[i];
+    lines.travels[i] = rays.ended[i] == 0;
+  }
+  numerics::with_chosen_instructions([&]<int n>() __attribute__((always_inline)) {
+    if constexpr (requires { shape.template meet_block<n>(lines, crossings); }) shape.template meet_block<n>(lines, crossings);
+    else if constexpr (MeetsBlocks<Shape>) shape.meet_block(lines, crossings);
+    else
+      for (int i = 0; i < lines.count; ++i)
+        if (lines.travels[i]) crossings.put(i, shape.meet(Vec3<double>{lines.x[i], lines.y[i], lines.z[i]}, Vec3<double>{lines.l[i], lines.m[i], lines.n[i]}));
+  });
 }
 
 }  // namespace
 
-void advance(const scene::Surface& surface, int surface_number, double index_before, double index_after,
-             const RayColumns& rays, int ray_count) {
-  const Setting setting{surface.local_from_previous,
-                        index_before,
-                        surface::IndexRatio<double>::of(index_before, index_after),
-                        surface.semi_diameter * surface.semi_diameter,
-                        surface.inner_semi_diameter * surface.inner_semi_diameter,
-                        surface_number};
+void advance(const scene::Surface& surface, int surface_number, const Transform& local_from_previous, bool is_shift, double index_before,
+             double index_after, const RayColumns& rays, int ray_count) {
+  const StepSetting setting{index_before, surface::IndexRatio<double>::of(index_before, index_after),
+                            surface.semi_diameter * surface.semi_diameter, surface.inner_semi_diameter * surface.inner_semi_diameter,
+                            surface_number};
   const Deflection deflection = surface.image                 ? Deflection::none
                                 : surface.mirror              ? Deflection::reflect
                                 : index_before == index_after ? Deflection::none
                                                               : Deflection::refract;
+  if (!is_shift) enter(local_from_previous, rays, ray_count);
+  const double shift = is_shift ? local_from_previous.translation.z : -0.0;
   std::visit(
-      [&](const auto& shape) {
-        if (surface.centred)
-          choose_deflection<true>(deflection, shape, setting, rays, ray_count);
-        else
-          choose_deflection<false>(deflection, shape, setting, rays, ray_count);
+      [&]<class Shape>(const Shape& shape) {
+        if constexpr (has_closed_form<Shape>) {
+          choose_step(deflection, surface.has_apertures(), shape, setting, shift, rays, ray_count);
+        } else {
+          surface::BlockOfCrossings crossings;
+          meet(shape, shift, rays, ray_count, crossings);
+          choose_step(deflection, surface.has_apertures(), Met{&crossings}, setting, shift, rays, ray_count);
+        }
       },
       surface.shape);
 }

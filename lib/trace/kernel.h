@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One block of rays through one surface: into its frame, to the hit, past its apertures, and on in the new direction.
-// Plain loops over columns in select form, one instance per shape, so that the compiler makes vectors of them; rays that
-// have ended keep their columns.
+// One block of rays through one surface: into its frame, and a step (step.h) for as many rays at a time as the processor's
+// vectors hold. Rays that have ended keep their columns.
 #pragma once
 
 #include "lib/scene/scene.h"
@@ -9,8 +8,9 @@
 
 namespace sagitta::trace {
 
-// Indices are positive; equal ones leave the direction as it is.
-void advance(const scene::Surface& surface, int surface_number, double index_before, double index_after,
-             const RayColumns& rays, int ray_count);
+// `local_from_previous` takes the rays from the frame in which they are, `is_shift` along z only. Indices are positive, equal
+// ones leave the direction as it is. OPL is left out where it has no column.
+void advance(const scene::Surface& surface, int surface_number, const numerics::RigidTransform<double>& local_from_previous, bool is_shift,
+             double index_before, double index_after, const RayColumns& rays, int ray_count);
 
 }  // namespace sagitta::trace

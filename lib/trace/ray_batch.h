@@ -22,21 +22,23 @@ using numerics::Vec3;
 using surface::Status;
 
 // The columns from some ray on, as the kernels see them. ended: 0 while the ray travels, else 8 * surface number + status.
+// opl: null in a batch without.
 struct RayColumns {
   double *x, *y, *z, *l, *m, *n, *opl;
   std::int32_t* ended;
 };
 
 struct RayBatch {
-  explicit RayBatch(std::size_t ray_count = 0) { resize(ray_count); }
+  explicit RayBatch(std::size_t ray_count = 0, bool with_opl = true) { resize(ray_count, with_opl); }
 
-  void resize(std::size_t ray_count) {
-    for (auto* column : {&x, &y, &z, &l, &m, &n, &opl}) column->resize(ray_count);
+  void resize(std::size_t ray_count, bool with_opl = true) {
+    for (auto* column : {&x, &y, &z, &l, &m, &n}) column->resize(ray_count);
+    opl.resize(with_opl ? ray_count : 0);
     ended.assign(ray_count, 0);
   }
   std::size_t size() const { return ended.size(); }
   RayColumns columns(std::size_t from) {
-    return {&x[from], &y[from], &z[from], &l[from], &m[from], &n[from], &opl[from], &ended[from]};
+    return {&x[from], &y[from], &z[from], &l[from], &m[from], &n[from], opl.empty() ? nullptr : &opl[from], &ended[from]};
   }
 
   Vec3<double> position(std::size_t ray) const { return {x[ray], y[ray], z[ray]}; }
@@ -47,7 +49,7 @@ struct RayBatch {
   void set(std::size_t ray, const Vec3<double>& position, const Vec3<double>& direction, double path) {
     x[ray] = position.x, y[ray] = position.y, z[ray] = position.z;
     l[ray] = direction.x, m[ray] = direction.y, n[ray] = direction.z;
-    opl[ray] = path;
+    if (!opl.empty()) opl[ray] = path;
   }
 
   std::vector<double> x, y, z, l, m, n, opl;

@@ -2,6 +2,7 @@
 #include "lib/trace/trace.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "lib/numerics/parallel.h"
 #include "lib/trace/kernel.h"
@@ -18,16 +19,34 @@ void ask_for(RayBatch& rays, std::size_t from) {
   const RayColumns block = rays.columns(from);
   constexpr std::size_t line = 64;  // bytes
   for (const double* column : {block.x, block.y, block.z, block.l, block.m, block.n, block.opl})
-    for (std::size_t i = 0; i < block_size; i += line / sizeof *column) __builtin_prefetch(column + i, 1, 2);
+    for (std::size_t i = 0; column && i < block_size; i += line / sizeof *column) __builtin_prefetch(column + i, 1, 2);
   for (std::size_t i = 0; i < block_size; i += line / sizeof *block.ended) __builtin_prefetch(block.ended + i, 1, 2);
 }
 
-void trace_block(const scene::Scene& scene, const scene::Wavelength& wavelength, RayBatch& rays, std::size_t from) {
-  const int ray_count = static_cast<int>(std::min(block_size, rays.size() - from));
-  ask_for(rays, from + block_size);
+// Whether a ray that travels is parallel to the plane z = 0 of a frame, or its path there too long for a number.
+bool any_is_parallel(const Vec3<double>& axis, const RayColumns& rays, int ray_count) {
+  bool any = false;
+  for (int i = 0; i < ray_count; ++i) {
+    const double slope = axis.x * rays.l[i] + axis.y * rays.m[i] + axis.z * rays.n[i];
+    any |= (rays.ended[i] == 0) & (std::abs(slope) < 1e-200);
+  }
+  return any;
+}
+
+void trace_block(const scene::Scene& scene, const scene::Wavelength& wavelength, RayBatch& batch, std::size_t from) {
+  const int ray_count = static_cast<int>(std::min(block_size, batch.size() - from));
+  const RayColumns rays = batch.columns(from);
+  ask_for(batch, from + block_size);
+  bool has_passed = false;  // by the surface before, which does nothing: the rays have not entered its frame, by this transform
+  numerics::RigidTransform<double> local_from_rays;
+  bool is_shift = true;
   for (int number = 1; number <= scene.surface_count(); ++number) {
-    const auto gap = static_cast<std::size_t>(number);
-    advance(scene.surface(number), number, wavelength.index[gap - 1], wavelength.index[gap], rays.columns(from), ray_count);
+    const scene::Surface& surface = scene.surface(number);
+    const double index_before = wavelength.index[static_cast<std::size_t>(number - 1)], index_after = wavelength.index[static_cast<std::size_t>(number)];
+    local_from_rays = has_passed ? surface.local_from_previous * local_from_rays : surface.local_from_previous;
+    is_shift = surface.centred && (!has_passed || is_shift);
+    has_passed = surface.does_nothing(index_before, index_after) && !any_is_parallel(local_from_rays.rotation.row_z, rays, ray_count);
+    if (!has_passed) advance(surface, number, local_from_rays, is_shift, index_before, index_after, rays, ray_count);
   }
 }
 
@@ -41,8 +60,9 @@ void trace(const scene::Scene& scene, const scene::Wavelength& wavelength, RayBa
 
 void trace_surface(const scene::Scene& scene, const scene::Wavelength& wavelength, int surface_number, RayBatch& rays) {
   const auto gap = static_cast<std::size_t>(surface_number);
+  const scene::Surface& surface = scene.surface(surface_number);
   for (std::size_t from = 0; from < rays.size(); from += block_size)
-    advance(scene.surface(surface_number), surface_number, wavelength.index[gap - 1], wavelength.index[gap],
+    advance(surface, surface_number, surface.local_from_previous, surface.centred, wavelength.index[gap - 1], wavelength.index[gap],
             rays.columns(from), static_cast<int>(std::min(block_size, rays.size() - from)));
 }
 
