@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 
 #if defined(__x86_64__)
 #include <immintrin.h>
@@ -104,22 +105,59 @@ SAGITTA_LANES(8, [[gnu::target("arch=x86-64-v4")]])
 #endif
 #undef SAGITTA_LANES
 
+// Two of them as one number: two chains of operations that do not wait for each other.
+template <class M>
+struct MaskTwice {
+  M first, second;
+
+  friend MaskTwice operator&(const MaskTwice& a, const MaskTwice& b) { return {a.first & b.first, a.second & b.second}; }
+  friend MaskTwice operator|(const MaskTwice& a, const MaskTwice& b) { return {a.first | b.first, a.second | b.second}; }
+  friend MaskTwice operator!(const MaskTwice& a) { return {!a.first, !a.second}; }
+  friend bool all(const MaskTwice& a) { return all(a.first) & all(a.second); }
+};
+template <int n>
+struct TwiceLanes {
+  using Half = Lanes<n>;
+  using Masks = MaskTwice<Mask<n>>;
+  Half first, second;
+
+  TwiceLanes() = default;
+  TwiceLanes(double all) : first(all), second(all) {}
+  TwiceLanes(const Half& a, const Half& b) : first(a), second(b) {}
+
+  friend TwiceLanes operator+(const TwiceLanes& a, const TwiceLanes& b) { return {a.first + b.first, a.second + b.second}; }
+  friend TwiceLanes operator-(const TwiceLanes& a, const TwiceLanes& b) { return {a.first - b.first, a.second - b.second}; }
+  friend TwiceLanes operator-(const TwiceLanes& a) { return {-a.first, -a.second}; }
+  friend TwiceLanes operator*(const TwiceLanes& a, const TwiceLanes& b) { return {a.first * b.first, a.second * b.second}; }
+  friend TwiceLanes operator/(const TwiceLanes& a, const TwiceLanes& b) { return {a.first / b.first, a.second / b.second}; }
+  friend Masks operator<(const TwiceLanes& a, const TwiceLanes& b) { return {a.first < b.first, a.second < b.second}; }
+  friend Masks operator<=(const TwiceLanes& a, const TwiceLanes& b) { return {a.first <= b.first, a.second <= b.second}; }
+  friend Masks operator>(const TwiceLanes& a, const TwiceLanes& b) { return {a.first > b.first, a.second > b.second}; }
+  friend Masks operator>=(const TwiceLanes& a, const TwiceLanes& b) { return {a.first >= b.first, a.second >= b.second}; }
+  friend Masks operator==(const TwiceLanes& a, const TwiceLanes& b) { return {a.first == b.first, a.second == b.second}; }
+  friend TwiceLanes sqrt(const TwiceLanes& a) { return {sqrt(a.first), sqrt(a.second)}; }
+  friend TwiceLanes either(const Masks& condition, const TwiceLanes& a, const TwiceLanes& b) {
+    return {either(condition.first, a.first, b.first), either(condition.second, a.second, b.second)};
+  }
+  friend TwiceLanes negated(const Masks& condition, const TwiceLanes& a) {
+    return {negated(condition.first, a.first), negated(condition.second, a.second)};
+  }
+  template <class Number>
+  static TwiceLanes load(const Number* from) { return {Half::load(from), Half::load(from + n)}; }
+  template <class Number>
+  void store(Number* to) const { first.store(to), second.store(to + n); }
+};
+
 // a where the condition holds, else b: of one number, and of each lane. negate_where: -a where it holds, else a.
-template <class T>
-T select(bool condition, const T& a, const T& b) {
-  return condition ? a : b;
+template <class T, class Condition>
+T select(const Condition& condition, const T& a, const T& b) {
+  if constexpr (std::is_convertible_v<Condition, bool>) return condition ? a : b;
+  else return either(condition, a, b);
 }
-template <class T, int n>
-T select(const Mask<n>& condition, const T& a, const T& b) {
-  return either(condition, a, b);
-}
-template <class T>
-T negate_where(bool condition, const T& a) {
-  return condition ? T(-a) : a;
-}
-template <class T, int n>
-T negate_where(const Mask<n>& condition, const T& a) {
-  return negated(condition, a);
+template <class T, class Condition>
+T negate_where(const Condition& condition, const T& a) {
+  if constexpr (std::is_convertible_v<Condition, bool>) return condition ? T(-a) : a;
+  else return negated(condition, a);
 }
 inline bool all(bool condition) { return condition; }
 
@@ -127,3 +165,5 @@ inline bool all(bool condition) { return condition; }
 
 template <int n>
 struct std::numeric_limits<sagitta::numerics::Lanes<n>> : std::numeric_limits<double> {};
+template <int n>
+struct std::numeric_limits<sagitta::numerics::TwiceLanes<n>> : std::numeric_limits<double> {};

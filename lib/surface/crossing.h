@@ -42,14 +42,15 @@ struct StatusIn {
   static Status either(bool condition, Status yes, Status no) { return condition ? yes : no; }
   static T number(Status status) { return T(static_cast<int>(status)); }
 };
-template <int n>
-struct StatusIn<numerics::Lanes<n>> {
-  using T = numerics::Lanes<n>;
+template <class T>
+  requires(requires(const double* from) { T::load(from); })
+struct StatusIn<T> {
   struct Type {
     T numbers;
-    friend numerics::Mask<n> operator==(const Type& a, Status b) { return a.numbers == StatusIn<double>::number(b); }
+    friend auto operator==(const Type& a, Status b) { return a.numbers == StatusIn<double>::number(b); }
   };
-  static Type either(const numerics::Mask<n>& condition, Status yes, Status no) {
+  template <class Condition>
+  static Type either(const Condition& condition, Status yes, Status no) {
     return {select<T>(condition, StatusIn<double>::number(yes), StatusIn<double>::number(no))};
   }
   static T number(const Type& status) { return status.numbers; }

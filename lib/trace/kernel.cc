@@ -11,7 +11,9 @@
 namespace sagitta::trace {
 namespace {
 
-using numerics::InstructionSet, numerics::instruction_set, numerics::Lanes, numerics::select;
+using numerics::select;
+template <int n>
+using Several = numerics::TwiceLanes<n>;
 using Transform = numerics::RigidTransform<double>;
 
 // Shapes that meet a block at once, and those that meet ray by ray; the others have a closed form, in lanes.
@@ -54,7 +56,7 @@ void store(const Ray<T>& ray, const RayColumns& rays, int i) {
 // The last rays of a block, which do not fill a vector, in columns that do.
 class Remainder {
  public:
-  static constexpr int capacity = 8;
+  static constexpr int capacity = 16;
 
   [[gnu::noinline]] void take(const RayColumns& rays, int from, int count) {
     for (int i = 0; i < capacity; ++i) ended_[i] = 1;
@@ -87,8 +89,9 @@ void shift_along_z(double shift, Ray<T>& ray) {
 }
 
 // work(columns, i, k): on the n rays from columns[i] on, which are from k on in the block.
-template <int n, class Work>
+template <int in_vector, class Work>
 void for_each_vector(const RayColumns& rays, int ray_count, const Work& work) {
+  constexpr int n = 2 * in_vector;
   const int in_vectors = ray_count - ray_count % n;
   const int left = ray_count - in_vectors;
   Remainder remainder;
@@ -104,7 +107,7 @@ void for_each_vector(const RayColumns& rays, int ray_count, const Work& work) {
 template <StepKind kind, class Shape>
 void advance_by(const Shape& given_shape, const StepSetting& given_setting, double shift, const RayColumns& columns, int ray_count) {
   numerics::with_chosen_instructions_flat([&]<int n>() {
-    using T = Lanes<n>;
+    using T = Several<n>;
     const Shape shape = given_shape;  // copies, which no store to a column can change
     const StepSetting setting = given_setting;
     const double z_shift = shift;
@@ -138,7 +141,7 @@ void choose_step(Deflection deflection, bool has_apertures, const Shape& shape, 
 // Into a frame that is turned, or moved across the axis.
 void enter(const Transform& given, const RayColumns& columns, int ray_count) {
   numerics::with_chosen_instructions_flat([&]<int n>() {
-    using T = Lanes<n>;
+    using T = Several<n>;
     const Transform transform = given;
     for_each_vector<n>(columns, ray_count, [&](const RayColumns& rays, int i, int) {
       Ray<T> ray = load<T, false>(rays, i);
