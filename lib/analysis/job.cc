@@ -37,10 +37,11 @@ double round_up(double value) {
   return 10 * decade;
 }
 
+// Without OPL, which spots do not need.
 trace::RayBatch traced(const scene::Scene& scene, std::size_t field, std::size_t w, std::span<const trace::PupilPoint> pupil,
                        int thread_count) {
   const scene::Wavelength& wavelength = scene.wavelengths[w];
-  trace::RayBatch rays = launch(scene, scene.fields[field], wavelength.index.front(), pupil);
+  trace::RayBatch rays = launch(scene, scene.fields[field], wavelength.index.front(), pupil, false);
   trace::trace(scene, wavelength, rays, thread_count);
   return rays;
 }
@@ -105,7 +106,7 @@ scene::Beam beam_of_job(std::optional<scene::LaunchPupil> pupil) {
     const std::vector<trace::PupilPoint> points = pilot_points();
     for (std::size_t field = 0; field < scene.fields.size(); ++field)
       for (std::size_t w = 0; w < scene.wavelengths.size(); ++w)
-        take({launch(launching, scene.fields[field], scene.wavelengths[w].index.front(), points), field, w});
+        take({launch(launching, scene.fields[field], scene.wavelengths[w].index.front(), points, false), field, w});
   });
 }
 

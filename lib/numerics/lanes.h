@@ -72,6 +72,10 @@ inline unsigned sign_bits(__m128d a) { return static_cast<unsigned>(_mm_movemask
       for (int i = 0; i < n; ++i) root[i] = std::sqrt(a.of[i]); /* becomes one instruction */                          \
       return Lanes(root);                                                                                              \
     }                                                                                                                  \
+    made_for friend inline Lanes abs(const Lanes& a) {                                                                 \
+      using Bits = typename Mask<n>::Bits;                                                                             \
+      return Lanes((Vector)((Bits)a.of & (Bits{} + std::numeric_limits<std::int64_t>::max())));                        \
+    }                                                                                                                  \
     made_for friend inline Lanes either(const Mask<n>& condition, const Lanes& a, const Lanes& b) {                    \
       return Lanes(condition.bits ? a.of : b.of);                                                                      \
     }                                                                                                                  \
@@ -136,6 +140,7 @@ struct TwiceLanes {
   friend Masks operator>=(const TwiceLanes& a, const TwiceLanes& b) { return {a.first >= b.first, a.second >= b.second}; }
   friend Masks operator==(const TwiceLanes& a, const TwiceLanes& b) { return {a.first == b.first, a.second == b.second}; }
   friend TwiceLanes sqrt(const TwiceLanes& a) { return {sqrt(a.first), sqrt(a.second)}; }
+  friend TwiceLanes abs(const TwiceLanes& a) { return {abs(a.first), abs(a.second)}; }
   friend TwiceLanes either(const Masks& condition, const TwiceLanes& a, const TwiceLanes& b) {
     return {either(condition.first, a.first, b.first), either(condition.second, a.second, b.second)};
   }

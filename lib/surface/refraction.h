@@ -45,7 +45,7 @@ numerics::Vec3<T> with_unit_length(const numerics::Vec3<T>& d) {
 }
 
 // `along` is d.n. NaN in every component: total reflection.
-template <bool has_unit_normal = false, class T>
+template <class T, bool has_unit_normal = false>
 numerics::Vec3<T> refract(const numerics::Vec3<T>& d, const numerics::Vec3<T>& normal, const T& along,
                           const IndexRatio<T>& ratio) {
   using std::sqrt;
@@ -64,7 +64,7 @@ numerics::Vec3<T> refract(const numerics::Vec3<T>& d, const numerics::Vec3<T>& n
   return with_unit_length(mu * d + gamma * normal);
 }
 
-template <bool has_unit_normal = false, class T>
+template <class T, bool has_unit_normal = false>
 numerics::Vec3<T> reflect(const numerics::Vec3<T>& d, const numerics::Vec3<T>& normal, const T& along) {
   if constexpr (has_unit_normal) return with_unit_length(d - (T(2) * along) * normal);
   else return with_unit_length(d - (T(2) * along / dot(normal, normal)) * normal);  // (2)

@@ -195,9 +195,8 @@ struct Zernike {
     return {start.path + approach.t, start.point + approach.t * d, normal, dot(normal, d), Status::ok};
   }
 
-  template <int doubles_in_vector = 2>
-  [[gnu::always_inline]] void meet_block(const BlockOfLines& lines, BlockOfCrossings& crossings) const {
-    if (is_polynomial) return meet_departures<doubles_in_vector>(*this, lines, crossings);
+  void meet_block(const BlockOfLines& lines, BlockOfCrossings& crossings) const {
+    if (is_polynomial) return meet_departures(*this, lines, crossings);
     for (int i = 0; i < lines.count; ++i)
       if (lines.travels[i]) crossings.put(i, meet(Vec3<double>{lines.x[i], lines.y[i], lines.z[i]}, Vec3<double>{lines.l[i], lines.m[i], lines.n[i]}));
   }
@@ -228,10 +227,9 @@ struct Zernike {
     static constexpr double going = 0, arrived = 1, given_up = 2;
     T t{}, old_t{}, g{}, slope_x{}, slope_y{}, state{};
   };
-  // In select form, so that loops over it become vectors; what no longer goes on stays as it is.
+  // In select form, for T in lanes; what no longer goes on stays as it is.
   template <class T>
-  [[gnu::always_inline]] Approach<T> look_at(const Vec3<T>& origin, const Vec3<T>& d, const Approach<T>& before, const Sum<T>& p,
-                                             bool is_first) const {
+  Approach<T> look_at(const Vec3<T>& origin, const Vec3<T>& d, const Approach<T>& before, const Sum<T>& p, bool is_first) const {
     using std::abs;
     const T eps = std::numeric_limits<T>::epsilon();
     const T c(base.curvature), one_plus_K = T(1) + T(base.conic_constant), t = before.t;
@@ -240,21 +238,24 @@ struct Zernike {
     const T g = w - T(0.5) * c * (x * x + y * y + one_plus_K * w * w);
     const T n_x = c * x + G * p.along_x, n_y = c * y + G * p.along_y;
     const T w_t = d.z - p.along_x * d.x - p.along_y * d.y;
-    const T along = G * w_t - c * (x * d.x + y * d.y), forward = d.z < T(0) ? -along : along;
+    const T along = G * w_t - c * (x * d.x + y * d.y), forward = negate_where<T>(d.z < T(0), along);
     const T step = -g / along, next = t + step;
     const T scale = abs(origin.x) + abs(origin.y) + abs(origin.z) + abs(t);
     const T bend = T(0.5) * abs(c) * (d.x * d.x + d.y * d.y + abs(one_plus_K) * w_t * w_t);  // the conic's part of -g''/2
-    const bool is_last = (abs(step) * (abs(d.x) + abs(d.y)) <= T(4) * eps * scale) & (bend * step * step <= eps * scale * abs(along));
-    const bool at_rounding = abs(g) <= eps * G * (abs(z) + abs(p.value) + T(coefficient_sum));
-    const bool ends = at_rounding | is_last;
-    const bool falls = is_first | (abs(g) < abs(before.g));
-    const bool in_bracket = is_first | (g * before.g > T(0)) | ((next - before.old_t) * (next - t) < T(0));
-    const bool sound = falls & (G > T(0)) & (forward > T(0));  // false for NaN
-    const bool goes = before.state == T(Approach<T>::going);
+    const auto is_last = (abs(step) * (abs(d.x) + abs(d.y)) <= T(4) * eps * scale) & (bend * step * step <= eps * scale * abs(along));
+    const auto at_rounding = abs(g) <= eps * G * (abs(z) + abs(p.value) + T(coefficient_sum));
+    const auto ends = at_rounding | is_last;
+    const auto is_on_sheet = (G > T(0)) & (forward > T(0));  // false for NaN
+    const auto goes = before.state == T(Approach<T>::going);
+    auto sound = is_on_sheet, in_bracket = is_on_sheet;
+    if (!is_first) {
+      sound = sound & (abs(g) < abs(before.g));
+      in_bracket = (g * before.g > T(0)) | ((next - before.old_t) * (next - t) < T(0));
+    }
     const T arrived(Approach<T>::arrived), given_up(Approach<T>::given_up), going(Approach<T>::going);
-    const T after_end = sound & ends ? arrived : given_up;
-    const T after = sound & !ends & in_bracket ? going : after_end;
-    return {goes & !at_rounding ? next : t, t, g, goes ? n_x * per_G : before.slope_x, goes ? n_y * per_G : before.slope_y, goes ? after : before.state};
+    const T after = select<T>(sound & ends, arrived, select<T>(sound & in_bracket, going, given_up));
+    return {select<T>(goes & !at_rounding, next, t), t, g, select<T>(goes, n_x * per_G, before.slope_x),
+            select<T>(goes, n_y * per_G, before.slope_y), select<T>(goes, after, before.state)};
   }
 };
 

@@ -19,8 +19,8 @@ Vec3<double> object_point(const scene::Scene& scene, const scene::Field& field) 
 }
 
 RayBatch launch_collimated(const scene::Scene& scene, const scene::Field& field, double index,
-                           std::span<const PupilPoint> pupil) {
-  RayBatch rays(pupil.size());
+                           std::span<const PupilPoint> pupil, bool with_opl) {
+  RayBatch rays(pupil.size(), with_opl);
   const Vec3<double> d = normalized(Vec3<double>{field.x, field.y, 1});
   rays.opl_origin = index * scene.pupil.z * d.z;
   for (std::size_t i = 0; i < pupil.size(); ++i) {
@@ -30,8 +30,8 @@ RayBatch launch_collimated(const scene::Scene& scene, const scene::Field& field,
   return rays;
 }
 
-RayBatch launch_telecentric(const scene::Scene& scene, const scene::Field& field, std::span<const PupilPoint> pupil) {
-  RayBatch rays(pupil.size());
+RayBatch launch_telecentric(const scene::Scene& scene, const scene::Field& field, std::span<const PupilPoint> pupil, bool with_opl) {
+  RayBatch rays(pupil.size(), with_opl);
   const double edge = scene.pupil.edge_tangent;
   for (std::size_t i = 0; i < pupil.size(); ++i)
     rays.set(i, object_point(scene, field), normalized(Vec3<double>{pupil[i].x * edge, pupil[i].y * edge, 1}), 0);
@@ -39,8 +39,8 @@ RayBatch launch_telecentric(const scene::Scene& scene, const scene::Field& field
 }
 
 RayBatch launch_from_point(const scene::Scene& scene, const scene::Field& field, double index,
-                           std::span<const PupilPoint> pupil) {
-  RayBatch rays(pupil.size());
+                           std::span<const PupilPoint> pupil, bool with_opl) {
+  RayBatch rays(pupil.size(), with_opl);
   const Vec3<double> object = object_point(scene, field), centre{0, 0, scene.pupil.z};
   const Vec3<double> to_centre = centre - object;
   const double sense = to_centre.z < 0 ? -1 : 1;
@@ -63,10 +63,10 @@ RayBatch launch_from_point(const scene::Scene& scene, const scene::Field& field,
 }  // namespace
 
 RayBatch launch(const scene::Scene& scene, const scene::Field& field, double index_before,
-                std::span<const PupilPoint> pupil) {
-  if (scene.object.at_infinity()) return launch_collimated(scene, field, index_before, pupil);
-  if (scene.pupil.telecentric) return launch_telecentric(scene, field, pupil);
-  return launch_from_point(scene, field, index_before, pupil);
+                std::span<const PupilPoint> pupil, bool with_opl) {
+  if (scene.object.at_infinity()) return launch_collimated(scene, field, index_before, pupil, with_opl);
+  if (scene.pupil.telecentric) return launch_telecentric(scene, field, pupil, with_opl);
+  return launch_from_point(scene, field, index_before, pupil, with_opl);
 }
 
 }  // namespace sagitta::trace

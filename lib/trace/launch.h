@@ -24,8 +24,8 @@ struct PupilPoint {
 };
 
 // index_before is that of the object space. Every batch of one field, scene and index has the same opl_origin: the
-// chief ray's OPL at its start.
+// chief ray's OPL at its start. Who asks for no wavefront needs no column of OPL.
 RayBatch launch(const scene::Scene& scene, const scene::Field& field, double index_before,
-                std::span<const PupilPoint> pupil);
+                std::span<const PupilPoint> pupil, bool with_opl = true);
 
 }  // namespace sagitta::trace

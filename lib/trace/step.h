@@ -46,8 +46,8 @@ Ray<T> step(const StepSetting& setting, const Ray<T>& ray, const surface::Crossi
   }
   const surface::IndexRatio<T> ratio{T(setting.ratio.mu), T(setting.ratio.one_minus_mu_squared)};
   Vec3<T> out = d;
-  if constexpr (kind.deflection == Deflection::refract) out = surface::refract<has_unit_normals>(d, crossing.normal, crossing.along, ratio);
-  if constexpr (kind.deflection == Deflection::reflect) out = surface::reflect<has_unit_normals>(d, crossing.normal, crossing.along);
+  if constexpr (kind.deflection == Deflection::refract) out = surface::refract<T, has_unit_normals>(d, crossing.normal, crossing.along, ratio);
+  if constexpr (kind.deflection == Deflection::reflect) out = surface::reflect<T, has_unit_normals>(d, crossing.normal, crossing.along);
   const auto transmitted = out.x == out.x;  // not NaN
 
   const auto moves = travels & met, turns = moves & open & transmitted;

@@ -23,14 +23,23 @@ void ask_for(RayBatch& rays, std::size_t from) {
   for (std::size_t i = 0; i < block_size; i += line / sizeof *block.ended) __builtin_prefetch(block.ended + i, 1, 2);
 }
 
-// Whether a ray that travels is parallel to the plane z = 0 of a frame, or its path there too long for a number.
-bool any_is_parallel(const Vec3<double>& axis, const RayColumns& rays, int ray_count) {
-  bool any = false;
-  for (int i = 0; i < ray_count; ++i) {
-    const double slope = axis.x * rays.l[i] + axis.y * rays.m[i] + axis.z * rays.n[i];
-    any |= (rays.ended[i] == 0) & (std::abs(slope) < 1e-200);
+// The plane that is passed by ends one kind of ray: those parallel to it, or with a path there too long for a number. Each on
+// its own, so that the others do not depend on it.
+void end_parallel_rays(const numerics::RigidTransform<double>& local_from_rays, int surface_number, const RayColumns& rays, int ray_count) {
+  const Vec3<double>& axis = local_from_rays.rotation.row_z;
+  const auto is_parallel = [&](int i) {
+    return (rays.ended[i] == 0) & (std::abs(axis.x * rays.l[i] + axis.y * rays.m[i] + axis.z * rays.n[i]) < 1e-200);
+  };
+  int count = 0;
+  for (int i = 0; i < ray_count; ++i) count += is_parallel(i);
+  for (int i = 0; count > 0 && i < ray_count; ++i) {
+    if (!is_parallel(i)) continue;
+    const Vec3<double> position = local_from_rays * Vec3<double>{rays.x[i], rays.y[i], rays.z[i]};
+    const Vec3<double> direction = local_from_rays.rotation * Vec3<double>{rays.l[i], rays.m[i], rays.n[i]};
+    rays.x[i] = position.x, rays.y[i] = position.y, rays.z[i] = position.z;
+    rays.l[i] = direction.x, rays.m[i] = direction.y, rays.n[i] = direction.z;
+    rays.ended[i] = ending(surface_number, Status::missed);
   }
-  return any;
 }
 
 void trace_block(const scene::Scene& scene, const scene::Wavelength& wavelength, RayBatch& batch, std::size_t from) {
@@ -45,8 +54,9 @@ void trace_block(const scene::Scene& scene, const scene::Wavelength& wavelength,
     const double index_before = wavelength.index[static_cast<std::size_t>(number - 1)], index_after = wavelength.index[static_cast<std::size_t>(number)];
     local_from_rays = has_passed ? surface.local_from_previous * local_from_rays : surface.local_from_previous;
     is_shift = surface.centred && (!has_passed || is_shift);
-    has_passed = surface.does_nothing(index_before, index_after) && !any_is_parallel(local_from_rays.rotation.row_z, rays, ray_count);
-    if (!has_passed) advance(surface, number, local_from_rays, is_shift, index_before, index_after, rays, ray_count);
+    has_passed = surface.does_nothing(index_before, index_after);
+    if (has_passed) end_parallel_rays(local_from_rays, number, rays, ray_count);
+    else advance(surface, number, local_from_rays, is_shift, index_before, index_after, rays, ray_count);
   }
 }
 

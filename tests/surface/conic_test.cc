@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lib/surface/conic.h"
+#include "lib/surface/sphere.h"
 
 #include <gtest/gtest.h>
 
@@ -93,21 +93,23 @@ TEST(Conic, far_side_of_a_sphere_is_a_miss) {
   EXPECT_LT(back.along, 0);
 }
 
-// Against the same template in 50 digits over wild conics and lines. Bound: with |d| = 1 and all of (3) evaluated with
+// Against the conic's template in 50 digits over wild lines. Bound: with |d| = 1 and all of (3) evaluated with
 // relative error 4 eps of their largest terms, the hit has the backward error 16 eps S (S: distance scale) across the
 // surface, divided by the cosine of incidence.
-TEST(Conic, hit_agrees_with_50_digits_within_its_derived_bound) {
+template <class Shape, class Make>
+void expect_hits_within_bound(const Make& make) {
   std::mt19937_64 generator(20261122);
   std::uniform_real_distribution<double> unit(-1, 1);
   int hits = 0, status_differs = 0;
   for (int i = 0; i < 20000; ++i) {
     const double radius = std::copysign(std::pow(10, 3 * unit(generator)), unit(generator));
-    const Conic conic{1 / radius, 3 * unit(generator)};
+    const Conic conic{1 / radius, std::is_same_v<Shape, Conic> ? 3 * unit(generator) : 0};
+    const Shape shape = make(conic);
     const double scale = std::abs(radius);
     const Vec3<double> target{0.5 * scale * unit(generator), 0.5 * scale * unit(generator), 0};
     const Vec3<double> d = normalized(Vec3<double>{unit(generator), unit(generator), 1.5 * unit(generator)});
     const Vec3<double> p = target + (3 * scale * unit(generator)) * d;
-    const auto fast = conic.meet(p, d);
+    const auto fast = shape.meet(p, d);
     const auto exact = conic.meet(vec3_cast<Real50>(p), vec3_cast<Real50>(d));
     if (fast.status != exact.status) {
       ++status_differs;
@@ -121,9 +123,18 @@ TEST(Conic, hit_agrees_with_50_digits_within_its_derived_bound) {
     // on the surface
     const Vec3<double> hit = p + fast.path * d;
     EXPECT_NEAR(hit.z, static_cast<double>(conic.sag(Real50(hit.x), Real50(hit.y))), 2 * bound / std::abs(fast.normal.z)) << i;
+    // along = d.n, of the root: as the hit, in units of the radius
+    EXPECT_NEAR(fast.along, static_cast<double>(exact.along), 8 * bound / scale) << i;
   }
   EXPECT_GT(hits, 9000);
   EXPECT_LE(status_differs, 1);  // only a line within rounding of tangency may differ
+}
+
+TEST(Conic, hit_agrees_with_50_digits_within_its_derived_bound) {
+  expect_hits_within_bound<Conic>([](const Conic& conic) { return conic; });
+}
+TEST(Sphere, hit_agrees_with_50_digits_within_its_derived_bound) {
+  expect_hits_within_bound<Sphere>([](const Conic& conic) { return Sphere{conic.curvature}; });
 }
 
 }  // namespace

@@ -32,18 +32,22 @@ TEST(Refraction, obeys_snells_law_on_random_rays) {
     const double before = index(generator), after = index(generator);
     const double along = dot(d, normal);
     const Vec3<double> out = refract(d, normal, along, IndexRatio<double>::of(before, after));
+    const Vec3<double> by_unit_normal = refract<double, true>(d, unit_normal, dot(d, unit_normal), IndexRatio<double>::of(before, after));
     const Vec3<double> tangential = before * cross(d, unit_normal);
     const double sine = norm(tangential) / after;
     if (std::abs(sine - 1) < 1e-13) continue;  // on the threshold either answer is right
     if (sine > 1) {
       ++reflected;
       ASSERT_TRUE(std::isnan(out.x) && std::isnan(out.y) && std::isnan(out.z));
+      ASSERT_TRUE(std::isnan(by_unit_normal.x) && std::isnan(by_unit_normal.y) && std::isnan(by_unit_normal.z));
       continue;
     }
     ++refracted;
-    ASSERT_NEAR(norm(out), 1, 1e-14);
-    ASSERT_LE(norm(tangential - after * cross(out, unit_normal)), 1e-14);
-    ASSERT_GE(along * dot(out, normal), 0);  // goes on to the same side
+    for (const Vec3<double>& direction : {out, by_unit_normal}) {
+      ASSERT_NEAR(norm(direction), 1, 1e-14);
+      ASSERT_LE(norm(tangential - after * cross(direction, unit_normal)), 1e-14);
+      ASSERT_GE(along * dot(direction, normal), 0);  // goes on to the same side
+    }
   }
   EXPECT_GT(refracted, 700000);
   EXPECT_GT(reflected, 50000);
@@ -53,9 +57,10 @@ TEST(Refraction, obeys_snells_law_on_random_rays) {
 TEST(Refraction, nearly_equal_indices_bend_by_the_right_tiny_angle) {
   const double s = std::sqrt(0.5);
   const Vec3<double> d{s, 0, s}, normal{0, 0, 1};
-  const Vec3<double> out = refract(d, normal, s, IndexRatio<double>::of(1, 1 + 1e-12));
   const double actual_excess = (1 + 1e-12) - 1;  // the double nearest 1 + 1e-12
-  EXPECT_NEAR(numerics::angle_between(out, d), actual_excess, 1e-3 * actual_excess);
+  const auto ratio = IndexRatio<double>::of(1, 1 + 1e-12);
+  for (const Vec3<double>& out : {refract(d, normal, s, ratio), refract<double, true>(d, normal, s, ratio)})
+    EXPECT_NEAR(numerics::angle_between(out, d), actual_excess, 1e-3 * actual_excess);
 }
 
 // A10: near the critical angle, cos t = sqrt(1 - mu^2 sin^2) has the error 4e-16 / cos t from the radicand's rounding.
@@ -109,9 +114,10 @@ TEST(Reflection, keeps_the_angle_and_the_plane_of_incidence) {
   std::mt19937_64 generator(2);
   for (int i = 0; i < 10000; ++i) {
     const Vec3<double> d = random_direction(generator), normal = random_direction(generator);
-    const Vec3<double> out = reflect(d, normal, dot(d, normal));
-    EXPECT_NEAR(dot(out, normal), -dot(d, normal), 1e-15);
-    EXPECT_LE(norm(cross(out, normal) - cross(d, normal)), 1e-15);
+    for (const Vec3<double>& out : {reflect(d, normal, dot(d, normal)), reflect<double, true>(d, normal, dot(d, normal))}) {
+      EXPECT_NEAR(dot(out, normal), -dot(d, normal), 1e-15);
+      EXPECT_LE(norm(cross(out, normal) - cross(d, normal)), 1e-15);
+    }
   }
 }
 
