@@ -64,25 +64,30 @@ auto in_a_process_of_its_own(const Work& work) {
   return result;
 }
 
+std::array<double, 1> triangulated(const prescription::PointCloud& cloud, int thread_count) {
+  const double begin = now(thread_count);
+  std::vector<numerics::Vec3<double>> points;
+  points.reserve(cloud.points.size());
+  for (const std::uint32_t i : scene::along_curve(cloud.points)) points.push_back(cloud.points[i]);
+  benchmark::DoNotOptimize(scene::delaunay(points).data());
+  return {now(thread_count) - begin};
+}
+std::array<double, 2> prepared(const prescription::PointCloud& cloud, int thread_count) {  // mesh; patches
+  const double begin = now(thread_count);
+  const auto mesh = scene::triangulate(cloud).mesh;
+  const double made = now(thread_count);
+  benchmark::DoNotOptimize(scene::fit_patches(mesh->mesh, thread_count).patches.data());
+  return {made - begin, now(thread_count) - made};
+}
+
 void measure(benchmark::State& state, int side, bool is_regular, int thread_count) {
   const prescription::PointCloud cloud = cloud_of(side, is_regular);
+  // Once untimed: a virtual machine gives memory back that was free for a while, and takes long to get it again.
+  in_a_process_of_its_own([&] { return prepared(cloud, thread_count); });
   double delaunay = 0, mesh = 0, patches = 0;
   for (auto _ : state) {
-    const auto [triangulating] = in_a_process_of_its_own([&] {
-      const double begin = now(thread_count);
-      std::vector<numerics::Vec3<double>> points;
-      points.reserve(cloud.points.size());
-      for (const std::uint32_t i : scene::along_curve(cloud.points)) points.push_back(cloud.points[i]);
-      benchmark::DoNotOptimize(scene::delaunay(points).data());
-      return std::array{now(thread_count) - begin};
-    });
-    const auto [making, fitting] = in_a_process_of_its_own([&] {
-      const double begin = now(thread_count);
-      const auto mesh_of_cloud = scene::triangulate(cloud).mesh;
-      const double made = now(thread_count);
-      benchmark::DoNotOptimize(scene::fit_patches(mesh_of_cloud->mesh, thread_count).patches.data());
-      return std::array{made - begin, now(thread_count) - made};
-    });
+    const auto [triangulating] = in_a_process_of_its_own([&] { return triangulated(cloud, thread_count); });
+    const auto [making, fitting] = in_a_process_of_its_own([&] { return prepared(cloud, thread_count); });
     state.SetIterationTime(making + fitting);
     delaunay += triangulating;
     mesh += making;
