@@ -86,14 +86,14 @@ class Listing {
 
   // Traces the rays and prints a row for each ray and surface.
   void print(const LaunchedRays& launched) {
-    RayBatch rays = launched.rays;
-    std::vector<std::string> rows(rays.size());
+    trace::SurfaceBySurface tracing(scene_, scene_.wavelengths[launched.wavelength], launched.rays);
+    std::vector<std::string> rows(launched.rays.size());
+    std::vector<bool> travels(rows.size(), true);
     for (int surface = 1; surface <= scene_.surface_count(); ++surface) {
-      std::vector<bool> travelled(rays.size());
-      for (std::size_t i = 0; i < rays.size(); ++i) travelled[i] = rays.ended[i] == 0;
-      trace_surface(scene_, scene_.wavelengths[launched.wavelength], surface, rays);
+      const RayBatch& rays = tracing.next();
       for (std::size_t i = 0; i < rays.size(); ++i) {
-        if (!travelled[i]) continue;
+        if (!travels[i]) continue;
+        travels[i] = rays.ended[i] == 0;
         const Vec3<double> p = global_position(scene_, surface, rays, i), d = global_direction(scene_, surface, rays, i);
         fmt::format_to(std::back_inserter(rows[i]),
                        "{},{},{:.17g},{},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{}\n", printed_ + i + 1, launched.field,
@@ -101,11 +101,11 @@ class Listing {
                        rays.optical_path_length(i), surface::status_names[static_cast<std::size_t>(rays.status(i))]);
       }
     }
-    for (std::size_t i = 0; i < rays.size(); ++i) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
       if (std::fputs(rows[i].c_str(), stdout) < 0) throw std::system_error(errno, std::generic_category());
-      any_arrived_ = any_arrived_ || rays.ended[i] == 0;
+      any_arrived_ = any_arrived_ || travels[i];
     }
-    printed_ += rays.size();
+    printed_ += rows.size();
   }
   bool any_arrived() const { return any_arrived_; }
 

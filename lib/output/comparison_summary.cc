@@ -64,7 +64,7 @@ Table main_table(const Comparison& comparison) {
       std::vector<std::string> row{std::to_string(result.field), fmt::format("{:g}", field[0]), fmt::format("{:g}", field[1]),
                                    fmt::format("{:g}", first.wavelengths_nm[result.wavelength]), system.report.system,
                                    std::to_string(ok), std::to_string(result.rays.total() - ok)};
-      if (covers) row.push_back(result.coverage.empty() ? "" : fmt::format("{:.2f}", 100 * result.coverage.front().share));
+      if (covers) row.push_back(result.coverage.empty() ? "" : percent(result.coverage.front().share));
       row.push_back(significant(1e3 * result.spot->rms_radius));
       const bool is_first = &system == &comparison.systems.front();
       row.push_back(is_first ? "" : significant(1e3 * difference.spot.rms_radius));

@@ -175,7 +175,7 @@ std::string summary_text(const Report& report) {
     std::vector<std::string> row{std::to_string(result.field), fmt::format("{:g}", field[0]), fmt::format("{:g}", field[1]),
                                  fmt::format("{:g}", report.wavelengths_nm[result.wavelength]), std::to_string(launched),
                                  std::to_string(ok), std::to_string(launched - ok)};
-    if (covers) row.push_back(fmt::format("{:.2f}", 100 * result.coverage.front().share));
+    if (covers) row.push_back(percent(result.coverage.front().share));
     if (result.spot)
       for (const double value : {result.spot->centroid_x, result.spot->centroid_y}) row.push_back(to_a_nanometre(value));
     if (result.spot)

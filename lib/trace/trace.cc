@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "lib/numerics/parallel.h"
 #include "lib/trace/kernel.h"
@@ -42,22 +43,25 @@ void end_parallel_rays(const numerics::RigidTransform<double>& local_from_rays, 
   }
 }
 
-void trace_block(const scene::Scene& scene, const scene::Wavelength& wavelength, RayBatch& batch, std::size_t from) {
-  const int ray_count = static_cast<int>(std::min(block_size, batch.size() - from));
-  const RayColumns rays = batch.columns(from);
-  ask_for(batch, from + block_size);
-  bool has_passed = false;  // by the surface before, which does nothing: the rays have not entered its frame, by this transform
-  numerics::RigidTransform<double> local_from_rays;
-  bool is_shift = true;
-  for (int number = 1; number <= scene.surface_count(); ++number) {
-    const scene::Surface& surface = scene.surface(number);
-    const double index_before = wavelength.index[static_cast<std::size_t>(number - 1)], index_after = wavelength.index[static_cast<std::size_t>(number)];
-    local_from_rays = has_passed ? surface.local_from_previous * local_from_rays : surface.local_from_previous;
-    is_shift = surface.centred && (!has_passed || is_shift);
-    has_passed = surface.does_nothing(index_before, index_after);
-    if (has_passed) end_parallel_rays(local_from_rays, number, rays, ray_count);
-    else advance(surface, number, local_from_rays, is_shift, index_before, index_after, rays, ray_count);
-  }
+double index_of(const scene::Wavelength& wavelength, int gap) { return wavelength.index[static_cast<std::size_t>(gap)]; }
+
+// The rays of a block to surface `number` and through it, or by it: then the way is longer.
+void go_on(const scene::Scene& scene, const scene::Wavelength& wavelength, int number, const RayColumns& rays, int ray_count, Way& way) {
+  const scene::Surface& surface = scene.surface(number);
+  const double index_before = index_of(wavelength, number - 1), index_after = index_of(wavelength, number);
+  way.local_from_rays = way.has_passed ? surface.local_from_previous * way.local_from_rays : surface.local_from_previous;
+  way.is_shift = surface.centred && (!way.has_passed || way.is_shift);
+  way.has_passed = surface.does_nothing(index_before, index_after);
+  if (way.has_passed) end_parallel_rays(way.local_from_rays, number, rays, ray_count);
+  else advance(surface, number, way.local_from_rays, way.is_shift, index_before, index_after, rays, ray_count);
+}
+
+int block_at(std::size_t from, const RayBatch& rays) { return static_cast<int>(std::min(block_size, rays.size() - from)); }
+
+void trace_block(const scene::Scene& scene, const scene::Wavelength& wavelength, RayBatch& rays, std::size_t from) {
+  ask_for(rays, from + block_size);
+  Way way;
+  for (int number = 1; number <= scene.surface_count(); ++number) go_on(scene, wavelength, number, rays.columns(from), block_at(from, rays), way);
 }
 
 }  // namespace
@@ -68,12 +72,30 @@ void trace(const scene::Scene& scene, const scene::Wavelength& wavelength, RayBa
                          [&] { return [&](std::size_t block) { trace_block(scene, wavelength, rays, block * block_size); }; });
 }
 
+SurfaceBySurface::SurfaceBySurface(const scene::Scene& scene, const scene::Wavelength& wavelength, RayBatch rays)
+    : scene_(scene), wavelength_(wavelength), rays_(std::move(rays)), ways_((rays_.size() + block_size - 1) / block_size) {}
+
+const RayBatch& SurfaceBySurface::next() {
+  ++number_;
+  const scene::Surface& surface = scene_.surface(number_);
+  const bool is_dummy = surface.does_nothing(index_of(wavelength_, number_ - 1), index_of(wavelength_, number_));
+  if (is_dummy) met_ = rays_;
+  for (std::size_t block = 0; block < ways_.size(); ++block) {
+    const std::size_t from = block * block_size;
+    Way& way = ways_[block];
+    go_on(scene_, wavelength_, number_, rays_.columns(from), block_at(from, rays_), way);
+    if (is_dummy)
+      advance(surface, number_, way.local_from_rays, way.is_shift, index_of(wavelength_, number_ - 1), index_of(wavelength_, number_),
+              met_.columns(from), block_at(from, rays_));
+  }
+  return is_dummy ? met_ : rays_;
+}
+
 void trace_surface(const scene::Scene& scene, const scene::Wavelength& wavelength, int surface_number, RayBatch& rays) {
-  const auto gap = static_cast<std::size_t>(surface_number);
   const scene::Surface& surface = scene.surface(surface_number);
   for (std::size_t from = 0; from < rays.size(); from += block_size)
-    advance(surface, surface_number, surface.local_from_previous, surface.centred, wavelength.index[gap - 1], wavelength.index[gap],
-            rays.columns(from), static_cast<int>(std::min(block_size, rays.size() - from)));
+    advance(surface, surface_number, surface.local_from_previous, surface.centred, index_of(wavelength, surface_number - 1),
+            index_of(wavelength, surface_number), rays.columns(from), block_at(from, rays));
 }
 
 Vec3<double> global_position(const scene::Scene& scene, int surface_number, const RayBatch& rays, std::size_t ray) {
