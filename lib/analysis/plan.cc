@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <set>
+#include <utility>
 
 #include "lib/scene/compile.h"
 #include "lib/surface/block.h"
@@ -48,7 +50,7 @@ trace::RayBatch sample_ray(const scene::Scene& open) {
 
 std::vector<Passage> passages_of(const scene::Scene& scene) {
   scene::Scene open = scene;
-  for (scene::Surface& surface : open.surfaces) surface.semi_diameter = std::numeric_limits<double>::infinity(), surface.inner_semi_diameter = 0;
+  for (scene::Surface& surface : open.surfaces) surface.inner_semi_diameter = 0, surface.semi_diameter = std::numeric_limits<double>::infinity();
   trace::RayBatch ray = sample_ray(open);
   std::vector<Passage> passages;
   bool has_passed = false, is_shift = true;
@@ -118,7 +120,8 @@ std::size_t bytes_per_ray(const Passage& at, bool has_opl) {
   std::size_t bytes = 2 * bytes_of_columns(has_opl);
   if (!at.is_shift) bytes += 2 * bytes_of_columns(false);
   const bool by_blocks = std::visit([]<class S>(const S&) { return !surface::has_closed_form<S>; }, at.surface->shape);
-  constexpr std::size_t line = sizeof(surface::BlockOfLines) / surface::block_capacity, crossing = sizeof(surface::BlockOfCrossings) / surface::block_capacity;
+  constexpr std::size_t line = sizeof(surface::BlockOfLines) / surface::block_capacity;
+  constexpr std::size_t crossing = sizeof(surface::BlockOfCrossings) / surface::block_capacity;
   if (by_blocks) bytes += bytes_of_columns(false) + 2 * line + 2 * crossing;
   return bytes;
 }
@@ -148,10 +151,23 @@ std::string text_of(const std::vector<int>& numbers) {
   return text;
 }
 
+// The same polynomial of the order that was given, in `coefficients`.
+surface::Zernike with_zero_terms(const surface::Zernike& zernike, std::vector<double>& coefficients) {
+  using numerics::Polynomial;
+  coefficients.assign(Polynomial::count(zernike.given_order), 0);
+  for (int i = 0; i <= zernike.order; ++i)
+    for (int j = 0; i + j <= zernike.order; ++j)
+      coefficients[Polynomial::place(zernike.given_order, i, j)] = zernike.polynomial.coefficients[Polynomial::place(zernike.order, i, j)];
+  surface::Zernike result = zernike;
+  result.polynomial = {zernike.given_order, coefficients.data()};
+  return result;
+}
+
 class LeftOut {
  public:
   LeftOut(const scene::CompileResult& compiled, const JobRequest& request, const std::vector<Passage>& passages)
-      : compiled_(compiled), request_(request), passages_(passages), result_count_(compiled.scene->fields.size() * compiled.scene->wavelengths.size()) {}
+      : compiled_(compiled), request_(request), passages_(passages),
+        result_count_(static_cast<int>(compiled.scene->fields.size() * compiled.scene->wavelengths.size())) {}
 
   std::vector<Omission> all() && {
     outputs();
@@ -173,15 +189,17 @@ class LeftOut {
   void add(std::string what, std::string why, std::string saves) { found_.push_back({std::move(what), std::move(why), std::move(saves)}); }
 
   void outputs() {
-    const std::string results = counted(static_cast<int>(result_count_), "field and wavelength", "fields and wavelengths");
+    const std::string results = counted(result_count_, "field and wavelength", "fields and wavelengths");
     if (!request_.want_wavefront) {
       const int size = request_.wavefront.size;
-      add("wavefronts: their rays, chief rays, reference spheres and exit pupils", "only spots are asked for", fmt::format("a grid of {} x {} rays for {}", size, size, results));
-      add("wavefront.exr, wavefront.png", "only spots are asked for", counted(static_cast<int>(result_count_), "part", "parts") + " of the EXR file");
+      add("wavefronts: their rays, chief rays, reference spheres and exit pupils", "only spots are asked for",
+          fmt::format("a grid of {} x {} rays for {}", size, size, results));
+      add("wavefront.exr, wavefront.png", "only spots are asked for", counted(result_count_, "part", "parts") + " of the EXR file");
     }
     if (!request_.want_spot) {
-      add("spots: their rays and pixels", "only wavefronts are asked for", fmt::format("{} rays for {}", trace::PupilStream(request_.pattern, request_.ray_count).size(), results));
-      add("spot.exr, spot.png", "only wavefronts are asked for", counted(static_cast<int>(result_count_), "part", "parts") + " of the EXR file");
+      add("spots: their rays and pixels", "only wavefronts are asked for",
+          fmt::format("{} rays for {}", trace::PupilStream(request_.pattern, request_.ray_count).size(), results));
+      add("spot.exr, spot.png", "only wavefronts are asked for", counted(result_count_, "part", "parts") + " of the EXR file");
     }
   }
 
@@ -205,31 +223,27 @@ class LeftOut {
     };
     const auto names_of = [&](const Passage& at) {
       const auto given = compiled_.given.find(at.number);
-      return given == compiled_.given.end() ? std::pair<std::string, std::string>() : std::pair(kernel_name(given->second), kernel_name(at.surface->shape));
+      if (given == compiled_.given.end()) return std::pair<std::string, std::string>();
+      return std::pair(kernel_name(given->second), kernel_name(at.surface->shape));
     };
     std::set<std::pair<std::string, std::string>> pairs;
     for (const Passage& at : passages_)
       if (!at.is_passed_by && compiled_.given.contains(at.number)) pairs.insert(names_of(at));
     for (const auto& names : pairs)
-      over_surfaces([&](const Passage& at) { return !at.is_passed_by && names_of(at) == names; }, [&](const Passage& at) { return saved_from(at, compiled_.given.at(at.number)); },
+      over_surfaces([&](const Passage& at) { return !at.is_passed_by && names_of(at) == names; },
+                    [&](const Passage& at) { return saved_from(at, compiled_.given.at(at.number)); },
                     [&](const std::vector<int>& numbers, const std::string& saves) {
                       add(fmt::format("kernel '{}' for {}", names.first, text_of(numbers)), fmt::format("'{}' makes the same surface", names.second), saves);
                     });
     for (const Passage& at : passages_) {
       const auto* zernike = std::get_if<surface::Zernike>(&at.surface->shape);
-      if (zernike && zernike->order < zernike->given_order) {
-        std::string saves = "steps of the recurrence";
-        if (zernike->given_order <= numerics::highest_zernike_polynomial) {
-          std::vector<double> coefficients(numerics::Polynomial::count(zernike->given_order));
-          for (int i = 0; i <= zernike->order; ++i)
-            for (int j = 0; i + j <= zernike->order; ++j)
-              coefficients[numerics::Polynomial::place(zernike->given_order, i, j)] = zernike->polynomial.coefficients[numerics::Polynomial::place(zernike->order, i, j)];
-          surface::Zernike whole = *zernike;
-          whole.polynomial = {zernike->given_order, coefficients.data()};
-          saves = at.is_reached ? text_of(saved_from(at, whole)) : "";
-        }
-        add(fmt::format("Zernike terms of surface {} from order {} to {}", at.number, zernike->order + 1, zernike->given_order), "they are zero", saves);
+      if (!zernike || zernike->order == zernike->given_order) continue;
+      std::string saves = "steps of the recurrence";
+      if (zernike->given_order <= numerics::highest_zernike_polynomial) {
+        std::vector<double> coefficients;
+        saves = at.is_reached ? text_of(saved_from(at, with_zero_terms(*zernike, coefficients))) : "";
       }
+      add(fmt::format("Zernike terms of surface {} from order {} to {}", at.number, zernike->order + 1, zernike->given_order), "they are zero", saves);
     }
   }
 
@@ -250,11 +264,11 @@ class LeftOut {
                   with("tracing ", "planes in one medium that stop no ray"));
     over_surfaces([](const Passage& at) { return !at.is_passed_by && at.is_shift; }, spared([](Way& way) { way.is_shift = false; }),
                   with("turns into the frames of ", "they are centred: only a shift along z is left"));
-    over_surfaces([](const Passage& at) { return !at.is_passed_by && !at.surface->has_apertures(); }, spared([](Way& way) { way.kind.has_apertures = true; }),
-                  with("aperture tests of ", "they have no semi-diameter"));
+    over_surfaces([](const Passage& at) { return !at.is_passed_by && !at.surface->has_apertures(); },
+                  spared([](Way& way) { way.kind.has_apertures = true; }), with("aperture tests of ", "they have no semi-diameter"));
     const auto refract = [](Way& way) { way.kind.deflection = Deflection::refract; };
-    over_surfaces([](const Passage& at) { return !at.is_passed_by && !at.surface->image && at.deflection() == Deflection::none; }, spared(refract),
-                  with("refraction at ", "the index is the same on both sides"));
+    over_surfaces([](const Passage& at) { return !at.is_passed_by && !at.surface->image && at.deflection() == Deflection::none; },
+                  spared(refract), with("refraction at ", "the index is the same on both sides"));
     over_surfaces([](const Passage& at) { return at.surface->image; }, spared(refract), with("medium and refraction behind ", "rays end at the image surface"));
   }
 
@@ -274,7 +288,7 @@ class LeftOut {
   const scene::CompileResult& compiled_;
   const JobRequest& request_;
   const std::vector<Passage>& passages_;
-  std::size_t result_count_;
+  int result_count_;
   std::vector<Omission> found_;
 };
 

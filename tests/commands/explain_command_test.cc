@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `sagitta explain` as it is shipped, and `plan` in the summary of `trace`.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
@@ -46,6 +47,33 @@ TEST(ExplainCommand, says_the_same_as_the_summary_of_trace) {
     EXPECT_EQ(explained["plan"]["operations_include_opl"], only != " --only spot");
   }
   EXPECT_THAT(run_program("explain " + system + " --rays 300 --only wavefront").out, HasSubstr("331 rays for 4 fields and wavelengths"));
+}
+
+// A cloud far wider than the beam, of which a part is triangulated; and a beam that needs all of it.
+TEST(ExplainCommand, counts_the_points_that_the_beam_does_not_need) {
+  const Folder folder;
+  std::string points;
+  for (int i = -70; i <= 70; ++i)
+    for (int j = -70; j <= 70; ++j) {
+      const double x = 0.08 * i + 0.011 * (j % 4), y = 0.08 * j + 0.009 * (i % 3);
+      points += fmt::format("{:.17g} {:.17g} {:.17g}\n", x, y, (x * x + y * y) / 40);
+    }
+  folder.file("points.xyz", points);
+  const auto system = [&](const std::string& diameter) {
+    return folder.file("cloud.yaml", "sagitta: 1\nwavelengths_nm: [550]\naperture: {entrance_pupil_diameter_mm: " + diameter + "}\nsurfaces:\n"
+                                     "  - {name: front, stop: true, delaunay: {points: points.xyz}, thickness_mm: 30, medium: {index: 1.5}}\n  - {name: image}\n");
+  };
+  const json summary = traced(system("1"), "--rays 300");
+  const int used = summary["triangulated"][0]["used"].get<int>();
+  EXPECT_LT(used, 5000);
+  const std::string what = fmt::format("{} of the 19881 points of surface 1", 19881 - used);
+  const std::string here = run_program("explain " + system("1") + " --json --rays 300").out;
+  EXPECT_EQ(json::parse(here)["plan"], summary["plan"]);
+  EXPECT_THAT(here, HasSubstr(what));
+  const json whole = json::parse(run_program("explain " + system("10") + " --json --rays 300").out);
+  EXPECT_THAT(whole.dump(), Not(HasSubstr("points of surface 1")));
+  // facets and their patches, some two a point, of 64 and 128 bytes and more
+  EXPECT_GT(whole["plan"]["surfaces"][0]["data_bytes"].get<int>() - summary["plan"]["surfaces"][0]["data_bytes"].get<int>(), (19881 - used) * 2 * 192);
 }
 
 TEST(ExplainCommand, the_plan_has_the_same_bytes_for_any_thread_count_and_instruction_set) {
