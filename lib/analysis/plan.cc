@@ -59,10 +59,10 @@ std::vector<Passage> passages_of(const scene::Scene& scene) {
     const auto gap = static_cast<std::size_t>(number);
     Passage at{.number = number, .surface = &surface};
     at.is_passed_by = true;
-    for (auto wavelength = scene.wavelengths.rbegin(); wavelength != scene.wavelengths.rend(); ++wavelength) {
-      const double before = wavelength->index[gap - 1], after = wavelength->index[gap];
+    for (const scene::Wavelength& wavelength : scene.wavelengths) {
+      const double before = wavelength.index[gap - 1], after = wavelength.index[gap];
       at.is_passed_by = at.is_passed_by && surface.does_nothing(before, after);
-      if (at.index_before == at.index_after || before != after) at.index_before = before, at.index_after = after;
+      if (at.index_before == at.index_after) at.index_before = before, at.index_after = after;
     }
     is_shift = at.is_shift = surface.centred && (!has_passed || is_shift);
     has_passed = at.is_passed_by;

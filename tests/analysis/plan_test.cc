@@ -147,6 +147,7 @@ TEST(Plan, says_what_is_left_out_and_nothing_else) {
     EXPECT_TRUE(omissions(with, one.begin).empty());
   }
   EXPECT_EQ(cases.size(), 11u);
+  EXPECT_TRUE(omissions(plan_of_text(zernike("{4: 1, 14: 1}")), "Zernike terms").empty());
 }
 
 // Numbers are told, and add up: what an omission saves is what the scene with the feature takes more.
