@@ -25,6 +25,14 @@ struct TraceOptions : JobOptions {
 };
 int trace_command(const TraceOptions& options);
 
+struct ExplainOptions {
+  std::string system;
+  std::vector<std::string> only;  // as of trace
+  std::int64_t ray_count = 10000;
+  bool json = false;
+};
+int explain_command(const ExplainOptions& options);
+
 struct RaysOptions {
   std::string system;
   std::vector<std::string> pupil;  // "px,py"

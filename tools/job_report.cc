@@ -25,6 +25,10 @@ std::optional<analysis::JobRequest> make_request(const char* command, const JobO
   return request;
 }
 
+bool wants(const std::vector<std::string>& only, const char* output) {
+  return only.empty() || std::find(only.begin(), only.end(), output) != only.end();
+}
+
 output::Report make_report(const prescription::Model& model, const scene::CompileResult& compiled) {
   output::Report report;
   report.system = model.name.empty() ? std::filesystem::path(model.file).stem().string() : model.name;

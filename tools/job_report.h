@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "lib/analysis/job.h"
@@ -16,6 +17,9 @@ namespace sagitta::tools {
 
 // None, after saying so, where there is no such pattern.
 std::optional<analysis::JobRequest> make_request(const char* command, const JobOptions& options);
+
+// Whether an output is among those of --only, which are all where there are none.
+bool wants(const std::vector<std::string>& only, const char* output);
 
 // A report without results.
 output::Report make_report(const prescription::Model& model, const scene::CompileResult& compiled);

@@ -35,9 +35,18 @@ CLI::Validator from_to(double low, double high) {
 
 CLI::IsMember one_of(std::string_view choices) { return CLI::IsMember(sagitta::numerics::words_of(choices)); }
 
-void add_job(CLI::App& command, JobOptions& options) {
-  command.add_option("--rays", options.ray_count, "rays per field and wavelength, at least (the exact number: 'launched')")
+void add_only(CLI::App& command, std::vector<std::string>& only) {
+  command.add_option("--only", only, "spot, wavefront, or both separated by a comma (default: both)")
+      ->delimiter(',')->check(CLI::IsMember({"spot", "wavefront"}));
+}
+
+void add_ray_count(CLI::App& command, std::int64_t& ray_count) {
+  command.add_option("--rays", ray_count, "rays per field and wavelength, at least (the exact number: 'launched')")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1000000000}))->capture_default_str();
+}
+
+void add_job(CLI::App& command, JobOptions& options) {
+  add_ray_count(command, options.ray_count);
   command.add_option("--pattern", options.pattern, "hexapolar, square, random:SEED, fan_x or fan_y")->capture_default_str();
   command.add_option("--threads", options.thread_count, "threads (default: as many as the machine runs)")
       ->check(CLI::Range(1, 1024));
@@ -50,10 +59,19 @@ void add_trace(CLI::App& app, int& status) {
   command->add_option("SYSTEM", options.system, "prescription (YAML)")->required();
   command->add_option("-o,--output", options.folder,
                       "folder for spot.exr, spot.png, wavefront.exr, wavefront.png and summary.json")->required();
-  command->add_option("--only", options.only, "spot, wavefront, or both separated by a comma (default: both)")
-      ->delimiter(',')->check(CLI::IsMember({"spot", "wavefront"}));
+  add_only(*command, options.only);
   add_job(*command, options);
   command->callback([&status] { status = trace_command(options); });
+}
+
+void add_explain(CLI::App& app, int& status) {
+  static ExplainOptions options;
+  CLI::App* command = app.add_subcommand("explain", "Say what tracing a system costs, surface by surface, and what is left out");
+  command->add_option("SYSTEM", options.system, "prescription (YAML)")->required();
+  add_only(*command, options.only);
+  add_ray_count(*command, options.ray_count);
+  command->add_flag("--json", options.json, "print JSON in place of the tables");
+  command->callback([&status] { status = explain_command(options); });
 }
 
 void add_compare(CLI::App& app, int& status) {
@@ -144,6 +162,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   int status = 0;
   add_trace(app, status);
+  add_explain(app, status);
   add_compare(app, status);
   add_rays(app, status);
   add_check(app, status);

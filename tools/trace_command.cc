@@ -14,28 +14,21 @@
 #include "tools/write.h"
 
 namespace sagitta::tools {
-namespace {
-
-bool wants(const TraceOptions& options, const char* output) {
-  return options.only.empty() || std::find(options.only.begin(), options.only.end(), output) != options.only.end();
-}
-
-}  // namespace
-
 int trace_command(const TraceOptions& options) {
   auto request = make_request("trace", options);
   if (!request) return 2;
   const auto model = load_model(options.system);
   if (!model) return 1;
   const std::filesystem::path folder(options.folder);
-  request->want_spot = wants(options, "spot");
-  request->want_wavefront = wants(options, "wavefront");
+  request->want_spot = wants(options.only, "spot");
+  request->want_wavefront = wants(options.only, "wavefront");
   output::Report report;
   for (const scene::Beam& beam : {analysis::beam_of_job(), scene::Beam{}}) {
     const auto compiled = load_scene(*model, beam);
     if (!compiled) return 1;
     if (!make_folder("trace", folder)) return 1;
     report = make_report(*model, *compiled);
+    report.plan = analysis::plan_of(*compiled, *request);
     report.results = std::move(run_with_progress({&*compiled->scene, 1}, *request).front());
     if (!leaves_a_part(report)) break;
   }

@@ -31,6 +31,7 @@ class Constant : public Dispersion {
  public:
   explicit Constant(double index) : index_(index) {}
   double index(double) const override { return index_; }
+  bool is_constant() const override { return true; }
 
  private:
   double index_;

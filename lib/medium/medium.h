@@ -15,6 +15,7 @@ class Dispersion {
  public:
   virtual ~Dispersion() = default;
   virtual double index(double wavelength_um) const = 0;
+  virtual bool is_constant() const { return false; }
 };
 
 struct Medium {

@@ -8,10 +8,12 @@
 
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "lib/analysis/job.h"
+#include "lib/analysis/plan.h"
 #include "lib/output/exr.h"
 #include "lib/output/figure.h"
 #include "lib/output/table.h"
@@ -31,11 +33,16 @@ struct Report {
   scene::FirstOrder first_order;              // at the primary wavelength
   std::map<int, scene::Smoothing> smoothing;  // by the number of the surface
   std::vector<scene::CloudPart> parts;        // of clouds, that were enough for the rays
+  std::optional<analysis::Plan> plan;         // of the job
   std::vector<analysis::JobResult> results;
 };
 
 std::string summary_json(const Report& report);
 std::string summary_text(const Report& report);
+
+// What `sagitta explain` says: the plan of a report that has one.
+std::string explanation_json(const Report& report);
+std::string explanation_text(const Report& report);
 
 std::vector<ExrPart> spot_parts(const Report& report);
 std::vector<ExrPart> wavefront_parts(const Report& report);

@@ -121,6 +121,7 @@ ordered_json report_json(const Report& report) {
   for (const auto& part : report.parts) json["triangulated"].push_back({{"surface", part.surface}, {"points", part.points}, {"used", part.used}});
   for (const auto& result : report.results) json["results"].push_back(result_json(report, result));
   if (const std::string note = facets_note(report); !note.empty()) json["note"] = note;
+  if (report.plan) json["plan"] = plan_json(report);
   return json;
 }
 

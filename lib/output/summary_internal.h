@@ -14,6 +14,7 @@ namespace sagitta::output {
 nlohmann::ordered_json report_json(const Report& report);
 // {"field", "angle_deg" or "object_height_mm", "wavelength_nm"}
 nlohmann::ordered_json place_json(const Report& report, const analysis::JobResult& result);
+nlohmann::ordered_json plan_json(const Report& report);
 std::string text_of(const nlohmann::ordered_json& json);
 
 // Five digits; "-" for a number that does not exist.

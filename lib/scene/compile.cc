@@ -41,7 +41,15 @@ surface::Shape compile_shape(const prescription::Shape& given, numerics::Arena& 
       if (S::kind == given.kind) result = S::from(given.parameters, arena);
     }
   });
-  return surface::least_form(result);
+  return result;
+}
+
+// How many gaps have a medium whose index depends on the wavelength.
+int count_dispersive_media(const Model& model) {
+  int count = !model.object.medium.dispersion->is_constant();
+  for (const prescription::Surface& surface : model.surfaces)
+    count += !surface.is_mirror() && &surface != &model.surfaces.back() && !surface.medium->dispersion->is_constant();
+  return count;
 }
 
 // Frames: the axis is straight; a surface's vertex stands on it, is moved by decenter, then turned about its new axes.
@@ -174,6 +182,7 @@ CompileResult compile_for(const Model& model, const Beam& beam) {
   if (findings.has_errors()) return result;
 
   place_surfaces(model, scene);
+  result.dispersive_media = count_dispersive_media(model);
   scene.object.z = -model.object.distance_mm;
   scene.fields = compile_fields(model.fields);
   Clouds clouds(model.surfaces.size());
@@ -192,7 +201,9 @@ CompileResult compile_for(const Model& model, const Beam& beam) {
       clouds[i] = compiled.cloud;
       if (compiled.smoothing) result.smoothing[number] = *compiled.smoothing;
     } else {
-      surface.shape = compile_shape(given.shape, scene.arena);
+      const surface::Shape prescribed = compile_shape(given.shape, scene.arena);
+      surface.shape = surface::least_form(prescribed);
+      if (surface.shape.index() != prescribed.index()) result.given[number] = prescribed;
     }
     surface.mirror = given.is_mirror();
     surface.image = i + 1 == model.surfaces.size();

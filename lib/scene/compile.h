@@ -20,6 +20,9 @@ struct CompileResult {
   FirstOrder first_order{};       // at the primary wavelength
   std::map<int, Smoothing> smoothing;  // by the number of the surface; of those whose points were smoothed
   std::vector<CloudPart> parts;   // in the order of the surfaces
+  std::map<int, surface::Shape> given;  // by the number of the surface: its shape as prescribed, where another one is the same
+                                        // surface with fewer operations
+  int dispersive_media = 0;       // that rays travel in, of which the scene knows the indices at its wavelengths alone
   prescription::Findings findings;
 };
 

@@ -39,6 +39,8 @@ struct Facets {
   const Mesh* mesh = nullptr;
   double curvature = 0;  // at the vertex, by the contract's least squares (scene/cloud_fit.h)
 
+  static constexpr std::string_view kernel() { return "flat facets"; }
+  std::size_t data_bytes() const { return mesh ? mesh->data_bytes() : 0; }
   double vertex_curvature() const { return curvature; }
 
   // The facet at (x, y); no_facet where there is none.

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "lib/numerics/vec3.h"
@@ -95,6 +96,11 @@ struct Mesh {
   Grid grid;
   const Box* boxes = nullptr;                        // the leaves' level first, the root last
   std::uint32_t box_count = 0;
+
+  std::size_t data_bytes() const {
+    const auto cells = static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows);
+    return vertex_count * sizeof *vertices + facet_count * (sizeof *corners + sizeof *facets) + cells * sizeof *grid.facets + box_count * sizeof *boxes;
+  }
 };
 
 }  // namespace sagitta::surface

@@ -22,6 +22,8 @@ struct Patches {
   Facets facets;
   const CloughTocherPatch* patches = nullptr;  // one a facet
 
+  static constexpr std::string_view kernel() { return "C1 patches"; }
+  std::size_t data_bytes() const { return facets.data_bytes() + facets.mesh->facet_count * sizeof *patches; }
   double vertex_curvature() const { return facets.vertex_curvature(); }
 
   template <class T>

@@ -41,6 +41,14 @@ struct RadialPatches {
   const double* weights = nullptr;
   double shape_squared = 0;  // mm^2
 
+  static constexpr std::string_view kernel() {
+    return function == RadialFunction::cubic ? "cubic patches" : function == RadialFunction::thin_plate ? "thin-plate patches" : "multiquadric patches";
+  }
+  std::size_t data_bytes() const {
+    const std::uint32_t count = facets.mesh->facet_count;
+    const std::size_t node_count = count == 0 ? 0 : patches[count - 1].first + patches[count - 1].node_count;
+    return facets.data_bytes() + count * sizeof *patches + node_count * (sizeof *nodes + sizeof *weights);
+  }
   double vertex_curvature() const { return facets.vertex_curvature(); }
 
   // phi and (dphi/dr)/r as functions of r^2.

@@ -3,6 +3,9 @@
 // prescriptions; the interpolations of points all come from the kind `delaunay` of Facets, and a sphere is a conic of K = 0.
 #pragma once
 
+#include <cstddef>
+#include <string>
+#include <type_traits>
 #include <variant>
 
 #include "lib/surface/conic.h"
@@ -17,6 +20,28 @@ namespace sagitta::surface {
 
 using Shape = std::variant<Plane, Sphere, Conic, Zernike, Facets, Patches, RadialPatches<RadialFunction::cubic>,
                            RadialPatches<RadialFunction::thin_plate>, RadialPatches<RadialFunction::multiquadric>>;
+
+// Shapes that are met in lanes, by a formula.
+template <class S>
+inline constexpr bool has_closed_form = std::is_same_v<S, Plane> || std::is_same_v<S, Sphere> || std::is_same_v<S, Conic>;
+template <class S>
+inline constexpr bool has_unit_normals = requires { S::has_unit_normals; };
+
+// What the shape is called among those that are traced.
+inline std::string kernel_name(const Shape& shape) {
+  return std::visit([]<class S>(const S& of) -> std::string {
+    if constexpr (requires { of.kernel(); }) return std::string(of.kernel());
+    else return std::string(S::kind);
+  }, shape);
+}
+
+// The bytes that the shape holds or points to; 0 where there is nothing to know of it.
+inline std::size_t data_bytes(const Shape& shape) {
+  return std::visit([]<class S>(const S& of) -> std::size_t {
+    if constexpr (requires { of.data_bytes(); }) return of.data_bytes();
+    else return std::is_empty_v<S> ? 0 : sizeof(S);
+  }, shape);
+}
 
 // The shape of fewest operations that is the same surface: a Zernike surface without terms is its conic, a conic of K = 0 a
 // sphere, one of curvature 0 a plane.

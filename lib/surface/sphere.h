@@ -15,6 +15,7 @@ struct Sphere {
 
   double curvature = 0;  // c, 1/mm
 
+  static constexpr std::string_view kernel() { return "sphere"; }
   double vertex_curvature() const { return curvature; }
   template <class T>
   T sag(const T& x, const T& y) const {

@@ -26,6 +26,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
+#include <string>
 #include <vector>
 
 #include "lib/numerics/key.h"
@@ -71,18 +72,23 @@ struct Zernike {
   bool is_polynomial = false;  // then the sum is this one, in X and Y
   numerics::Polynomial polynomial;
   double coefficient_sum = 0;  // sum |C_j norm_j|, the size of the terms inside r0
+  int order = -1, given_order = -1;  // of the terms that are not zero, which alone are kept; of all that were given
 
   template <class Parameters, class Arena>
   static Zernike from(const Parameters& given, Arena& arena) {
     const auto indexing = numerics::zernike_indexing(given.text("indexing"));
     std::map<int, std::vector<Row>> by_order;
     Zernike result;
-    int order = -1;  // of the terms that are not zero
-    for (const auto& [index, micrometres] : given.list("coefficients_um"))
-      if (micrometres != 0) order = std::max(order, numerics::zernike_term(indexing, index).n);
+    for (const auto& [index, micrometres] : given.list("coefficients_um")) {
+      const int n = numerics::zernike_term(indexing, index).n;
+      result.given_order = std::max(result.given_order, n);
+      if (micrometres != 0) result.order = std::max(result.order, n);
+    }
+    const int order = result.order;
     result.is_polynomial = order <= numerics::highest_zernike_polynomial;
     std::vector<long double> expanded(result.is_polynomial ? numerics::Polynomial::count(order) : 0);
     for (const auto& [index, micrometres] : given.list("coefficients_um")) {
+      if (micrometres == 0) continue;
       const numerics::ZernikeTerm term = numerics::zernike_term(indexing, index);
       const int m = std::abs(term.m);
       const auto k = static_cast<std::size_t>((term.n - m) / 2);
@@ -109,6 +115,18 @@ struct Zernike {
     result.rows = arena.keep(std::move(all_rows));
     if (result.is_polynomial) result.polynomial = {order, arena.keep(std::vector<double>(expanded.begin(), expanded.end()))};
     return result;
+  }
+
+  std::string kernel() const {
+    const std::string of = order < 0 ? "without terms" : "of order " + std::to_string(order);
+    return (is_polynomial ? "Zernike polynomial " : "Zernike recurrence ") + of;
+  }
+  std::size_t data_bytes() const {
+    std::size_t row_count = 0;
+    for (int g = 0; g < group_count; ++g) row_count += static_cast<std::size_t>(groups[g].row_count);
+    const std::size_t terms = is_polynomial ? numerics::Polynomial::count(order) * sizeof *polynomial.coefficients
+                                            : static_cast<std::size_t>(group_count) * sizeof *groups + row_count * sizeof *rows;
+    return sizeof *this + terms;
   }
 
   // The sum and its gradient along x and y, in mm and 1.

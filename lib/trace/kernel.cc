@@ -16,14 +16,11 @@ template <int n>
 using Several = numerics::TwiceLanes<n>;
 using Transform = numerics::RigidTransform<double>;
 
-// Shapes that meet a block at once, and those that meet ray by ray; the others have a closed form, in lanes.
+// Shapes that meet a block at once, and those that meet ray by ray; the others have a closed form (shapes.h), in lanes.
 template <class Shape>
 concept MeetsBlocks = requires(const Shape& shape, surface::BlockOfLines& lines, surface::BlockOfCrossings& crossings) {
   shape.meet_block(lines, crossings);
 };
-template <class Shape>
-inline constexpr bool has_closed_form =
-    std::is_same_v<Shape, surface::Plane> || std::is_same_v<Shape, surface::Sphere> || std::is_same_v<Shape, surface::Conic>;
 
 // Crossings that are known already.
 struct Met {
@@ -32,13 +29,10 @@ struct Met {
   template <class T>
   surface::Crossing<T> at(int i, const Vec3<T>& d) const {
     const surface::BlockOfCrossings& at = *crossings;
-    const T a = T::load(at.slope_x + i), b = T::load(at.slope_y + i);
-    return {T::load(at.path + i), {T::load(at.x + i), T::load(at.y + i), T::load(at.z + i)}, {-a, -b, T(1)}, d.z - a * d.x - b * d.y,
-            {T::load(at.status + i)}};
+    return crossing_by_slopes<T>(T::load(at.path + i), {T::load(at.x + i), T::load(at.y + i), T::load(at.z + i)}, T::load(at.slope_x + i),
+                                 T::load(at.slope_y + i), d, {T::load(at.status + i)});
   }
 };
-template <class Shape>
-inline constexpr bool has_unit_normals = requires { Shape::has_unit_normals; };
 
 template <class T, bool has_opl>
 Ray<T> load(const RayColumns& rays, int i) {
@@ -82,12 +76,6 @@ class Remainder {
   std::int32_t ended_[capacity];
 };
 
-// Rays that have ended stay in their frame. (z + -0 is z, -0 too.)
-template <class T>
-void shift_along_z(double shift, Ray<T>& ray) {
-  ray.position.z = ray.position.z + select<T>(ray.ended == T(0), T(shift), T(-0.0));
-}
-
 // work(columns, i, k): on the n rays from columns[i] on, which are from k on in the block.
 template <int in_vector, class Work>
 void for_each_vector(const RayColumns& rays, int ray_count, const Work& work) {
@@ -117,25 +105,14 @@ void advance_by(const Shape& given_shape, const StepSetting& given_setting, doub
       if constexpr (std::is_same_v<Shape, Met>)
         store<kind.has_opl>(step<kind, false>(setting, ray, shape.at(k, ray.direction)), rays, i);
       else
-        store<kind.has_opl>(step<kind, has_unit_normals<Shape>>(setting, ray, shape.meet(ray.position, ray.direction)), rays, i);
+        store<kind.has_opl>(step<kind, surface::has_unit_normals<Shape>>(setting, ray, shape.meet(ray.position, ray.direction)), rays, i);
     });
   });
 }
 
 template <class Shape>
-void choose_step(Deflection deflection, bool has_apertures, const Shape& shape, const StepSetting& setting, double shift, const RayColumns& rays,
-                 int ray_count) {
-  const auto with_deflection = [&]<bool opl, bool apertures>() {
-    switch (deflection) {
-      case Deflection::none: return advance_by<StepKind{Deflection::none, opl, apertures}>(shape, setting, shift, rays, ray_count);
-      case Deflection::refract: return advance_by<StepKind{Deflection::refract, opl, apertures}>(shape, setting, shift, rays, ray_count);
-      case Deflection::reflect: return advance_by<StepKind{Deflection::reflect, opl, apertures}>(shape, setting, shift, rays, ray_count);
-    }
-  };
-  if (rays.opl)
-    has_apertures ? with_deflection.template operator()<true, true>() : with_deflection.template operator()<true, false>();
-  else
-    has_apertures ? with_deflection.template operator()<false, true>() : with_deflection.template operator()<false, false>();
+void choose_step(StepKind known_late, const Shape& shape, const StepSetting& setting, double shift, const RayColumns& rays, int ray_count) {
+  with_kind(known_late, [&]<StepKind kind>() { advance_by<kind>(shape, setting, shift, rays, ray_count); });
 }
 
 // Into a frame that is turned, or moved across the axis.
@@ -144,16 +121,7 @@ void enter(const Transform& given, const RayColumns& columns, int ray_count) {
     using T = Several<n>;
     const Transform transform = given;
     for_each_vector<n>(columns, ray_count, [&](const RayColumns& rays, int i, int) {
-      Ray<T> ray = load<T, false>(rays, i);
-      const auto cast = [](const Vec3<double>& v) { return numerics::vec3_cast<T>(v); };
-      const numerics::RigidTransform<T> in_lanes{
-          {cast(transform.rotation.row_x), cast(transform.rotation.row_y), cast(transform.rotation.row_z)}, cast(transform.translation)};
-      const Vec3<T> position = in_lanes * ray.position, direction = in_lanes.rotation * ray.direction;
-      const auto travels = ray.ended == T(0);
-      const auto chosen = [&](const Vec3<T>& a, const Vec3<T>& b) {
-        return Vec3<T>{select<T>(travels, a.x, b.x), select<T>(travels, a.y, b.y), select<T>(travels, a.z, b.z)};
-      };
-      store<false>(Ray<T>{chosen(position, ray.position), chosen(direction, ray.direction), ray.opl, ray.ended}, rays, i);
+      store<false>(entered(transform, load<T, false>(rays, i)), rays, i);
     });
   });
 }
@@ -180,23 +148,18 @@ void meet(const Shape& shape, double shift, const RayColumns& rays, int ray_coun
 
 void advance(const scene::Surface& surface, int surface_number, const Transform& local_from_previous, bool is_shift, double index_before,
              double index_after, const RayColumns& rays, int ray_count) {
-  const StepSetting setting{index_before, surface::IndexRatio<double>::of(index_before, index_after),
-                            surface.semi_diameter * surface.semi_diameter, surface.inner_semi_diameter * surface.inner_semi_diameter,
-                            surface_number};
-  const Deflection deflection = surface.image                 ? Deflection::none
-                                : surface.mirror              ? Deflection::reflect
-                                : index_before == index_after ? Deflection::none
-                                                              : Deflection::refract;
+  const StepSetting setting = StepSetting::of(surface, surface_number, index_before, index_after);
+  const StepKind kind{deflection_at(surface, index_before, index_after), rays.opl != nullptr, surface.has_apertures()};
   if (!is_shift) enter(local_from_previous, rays, ray_count);
   const double shift = is_shift ? local_from_previous.translation.z : -0.0;
   std::visit(
       [&]<class Shape>(const Shape& shape) {
-        if constexpr (has_closed_form<Shape>) {
-          choose_step(deflection, surface.has_apertures(), shape, setting, shift, rays, ray_count);
+        if constexpr (surface::has_closed_form<Shape>) {
+          choose_step(kind, shape, setting, shift, rays, ray_count);
         } else {
           surface::BlockOfCrossings crossings;
           meet(shape, shift, rays, ray_count, crossings);
-          choose_step(deflection, surface.has_apertures(), Met{&crossings}, setting, shift, rays, ray_count);
+          choose_step(kind, Met{&crossings}, setting, shift, rays, ray_count);
         }
       },
       surface.shape);

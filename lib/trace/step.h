@@ -4,6 +4,7 @@
 // left out when the step is compiled: OPL, apertures, a deflection.
 #pragma once
 
+#include "lib/scene/scene.h"
 #include "lib/surface/refraction.h"
 #include "lib/trace/ray_batch.h"
 
@@ -16,12 +17,39 @@ struct StepKind {
   bool has_opl, has_apertures;
 };
 
+inline Deflection deflection_at(const scene::Surface& surface, double index_before, double index_after) {
+  if (surface.image) return Deflection::none;
+  if (surface.mirror) return Deflection::reflect;
+  return index_before == index_after ? Deflection::none : Deflection::refract;
+}
+
+// Calls work.operator()<kind>() with a kind that is known only when the program runs.
+template <class Work>
+void with_kind(StepKind kind, const Work& work) {
+  const auto with_deflection = [&]<bool opl, bool apertures>() {
+    switch (kind.deflection) {
+      case Deflection::none: return work.template operator()<StepKind{Deflection::none, opl, apertures}>();
+      case Deflection::refract: return work.template operator()<StepKind{Deflection::refract, opl, apertures}>();
+      case Deflection::reflect: return work.template operator()<StepKind{Deflection::reflect, opl, apertures}>();
+    }
+  };
+  if (kind.has_opl)
+    kind.has_apertures ? with_deflection.template operator()<true, true>() : with_deflection.template operator()<true, false>();
+  else
+    kind.has_apertures ? with_deflection.template operator()<false, true>() : with_deflection.template operator()<false, false>();
+}
+
 // The surface's plain numbers.
 struct StepSetting {
   double index_before;
   surface::IndexRatio<double> ratio;
   double outer_squared, inner_squared;  // of the semi-diameters
   int surface_number;
+
+  static StepSetting of(const scene::Surface& surface, int surface_number, double index_before, double index_after) {
+    return {index_before, surface::IndexRatio<double>::of(index_before, index_after), surface.semi_diameter * surface.semi_diameter,
+            surface.inner_semi_diameter * surface.inner_semi_diameter, surface_number};
+  }
 };
 
 template <class T>
@@ -29,6 +57,33 @@ struct Ray {
   Vec3<T> position, direction;
   T opl, ended;  // as in RayBatch
 };
+
+// The crossing that a block of crossings holds (surface/block.h).
+template <class T>
+surface::Crossing<T> crossing_by_slopes(const T& path, const Vec3<T>& point, const T& slope_x, const T& slope_y, const Vec3<T>& d,
+                                        const typename surface::StatusIn<T>::Type& status) {
+  return {path, point, {-slope_x, -slope_y, T(1)}, d.z - slope_x * d.x - slope_y * d.y, status};
+}
+
+// Into a frame that is turned, or moved across the axis; or one that is moved along it alone. Rays that have ended stay in
+// theirs. (z + -0 is z, -0 too.)
+template <class T>
+Ray<T> entered(const numerics::RigidTransform<double>& transform, const Ray<T>& ray) {
+  using numerics::select;
+  const auto cast = [](const Vec3<double>& v) { return numerics::vec3_cast<T>(v); };
+  const numerics::RigidTransform<T> in_lanes{{cast(transform.rotation.row_x), cast(transform.rotation.row_y), cast(transform.rotation.row_z)},
+                                             cast(transform.translation)};
+  const Vec3<T> position = in_lanes * ray.position, direction = in_lanes.rotation * ray.direction;
+  const auto travels = ray.ended == T(0);
+  const auto chosen = [&](const Vec3<T>& a, const Vec3<T>& b) {
+    return Vec3<T>{select<T>(travels, a.x, b.x), select<T>(travels, a.y, b.y), select<T>(travels, a.z, b.z)};
+  };
+  return {chosen(position, ray.position), chosen(direction, ray.direction), ray.opl, ray.ended};
+}
+template <class T>
+void shift_along_z(double shift, Ray<T>& ray) {
+  ray.position.z = ray.position.z + numerics::select<T>(ray.ended == T(0), T(shift), T(-0.0));
+}
 
 // A ray that travels, from the place where it entered the surface's frame, by its crossing; others stay as they are.
 template <StepKind kind, bool has_unit_normals, class T>
