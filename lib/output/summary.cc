@@ -105,6 +105,7 @@ std::string to_a_nanometre(double value) {
 }  // namespace
 
 std::string significant(double value) { return std::isfinite(value) ? fmt::format("{:.5g}", value) : "-"; }
+std::string percent(double share) { return std::isfinite(share) ? fmt::format("{:.2f}", 100 * share) : "-"; }
 
 ordered_json place_json(const Report& report, const analysis::JobResult& result) {
   return {{"field", result.field},

@@ -19,6 +19,8 @@ std::string text_of(const nlohmann::ordered_json& json);
 
 // Five digits; "-" for a number that does not exist.
 std::string significant(double value);
+// A share as 100.00; "-" likewise.
+std::string percent(double share);
 // Why there is no wavefront, and where rays were lost: a line each, without the system's name.
 std::vector<std::string> remarks(const Report& report, const analysis::JobResult& result);
 

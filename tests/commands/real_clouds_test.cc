@@ -183,5 +183,19 @@ TEST(RealCloud, that_is_smoothed_says_so_everywhere) {
   EXPECT_FALSE(json::parse(run_program("trace " + none + " -o " + folder.path("out") + " --json --only spot").out).contains("smoothing"));
 }
 
+// 2026-11-22: "-nan" stood in the table, where no ray came to the points. All are clipped before.
+TEST(RealCloud, no_coverage_is_told_where_no_ray_comes_to_the_points) {
+  const Folder folder;
+  const std::string points = folder.file("points.polar", polar_file([](const Sample&) { return Is::there; }));
+  const std::string system = folder.file("s.yaml", fmt::format(
+      "sagitta: 1\nwavelengths_nm: [543]\naperture: {{entrance_pupil_diameter_mm: 2}}\nsurfaces:\n"
+      "  - {{stop: true, thickness_mm: 1, semi_diameter_mm: 2e-6, inner_semi_diameter_mm: 1e-6}}\n"
+      "  - {{delaunay: {{points: \"{}\", format: polar}}, thickness_mm: 31, medium: {{index: 1.333}}}}\n  - {{}}\n", points));
+  const Outcome run = run_program("trace " + system + " -o " + folder.path("out"));
+  EXPECT_EQ(run.status, 1);
+  EXPECT_THAT(run.out, HasSubstr("coverage"));
+  EXPECT_THAT(run.out, ::testing::Not(HasSubstr("nan")));
+}
+
 }  // namespace
 }  // namespace sagitta::test
