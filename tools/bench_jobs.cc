@@ -4,11 +4,7 @@
 #include "tools/bench_jobs.h"
 
 #include <benchmark/benchmark.h>
-#include <fcntl.h>
 #include <fmt/core.h>
-#include <spawn.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -29,6 +25,7 @@
 #include "lib/trace/launch.h"
 #include "lib/trace/trace.h"
 #include "tools/bench_clock.h"
+#include "tools/bench_program.h"
 #include "tools/bench_subject.h"
 
 namespace sagitta::bench {
@@ -54,30 +51,6 @@ class Folder {
  private:
   std::filesystem::path path_;
 };
-
-struct Run {
-  double processor = 0, wall = 0;  // seconds
-};
-
-// None where the program fails.
-std::optional<Run> run_program(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), SAGITTA_PROGRAM);
-  std::vector<char*> pointers;
-  for (std::string& argument : arguments) pointers.push_back(argument.data());
-  pointers.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  const double before = now(0);
-  pid_t child = 0;
-  const bool has_started = posix_spawn(&child, SAGITTA_PROGRAM, &actions, nullptr, pointers.data(), environ) == 0;
-  posix_spawn_file_actions_destroy(&actions);
-  int status = 0;
-  rusage use{};
-  if (!has_started || wait4(child, &status, 0, &use) != child || status != 0) return std::nullopt;
-  const auto seconds = [](const timeval& time) { return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec); };
-  return Run{seconds(use.ru_utime) + seconds(use.ru_stime), now(0) - before};
-}
 
 void measure_program(benchmark::State& state, int thread_count) {
   const std::string system = prescription::find_file(std::string("systems/") + system_file, ".").value_or("");

@@ -4,10 +4,6 @@
 
 #include <benchmark/benchmark.h>
 #include <elf.h>
-#include <fcntl.h>
-#include <spawn.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -16,7 +12,7 @@
 #include <fstream>
 #include <vector>
 
-#include "tools/bench_clock.h"
+#include "tools/bench_program.h"
 
 namespace sagitta::bench {
 namespace {
@@ -39,31 +35,6 @@ const std::vector<Command>& commands() {
   return all;
 }
 
-// Seconds of the processor (user and system), and of the clock; negative where the program failed.
-struct Taken {
-  double process = -1, clock = -1;
-};
-Taken run(const std::vector<std::string>& arguments) {
-  std::string program = SAGITTA_PROGRAM;
-  std::vector<std::string> kept = arguments;
-  std::vector<char*> argv{program.data()};
-  for (std::string& argument : kept) argv.push_back(argument.data());
-  argv.push_back(nullptr);
-  posix_spawn_file_actions_t to_nowhere;
-  posix_spawn_file_actions_init(&to_nowhere);
-  posix_spawn_file_actions_addopen(&to_nowhere, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  const double begin = now(0);
-  pid_t child = 0;
-  int status = 1;
-  rusage usage{};
-  const bool done = posix_spawn(&child, program.c_str(), &to_nowhere, nullptr, argv.data(), environ) == 0 && wait4(child, &status, 0, &usage) == child;
-  const double clock = now(0) - begin;
-  posix_spawn_file_actions_destroy(&to_nowhere);
-  if (!done || status != 0) return {};
-  const auto seconds = [](const timeval& time) { return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec); };
-  return {seconds(usage.ru_utime) + seconds(usage.ru_stime), clock};
-}
-
 double middle(std::vector<double> values) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), at, values.end());
@@ -76,14 +47,14 @@ void measure(benchmark::State& state, const Command& command) {
   if (arguments.back() == "-o") arguments.push_back(folder.string());
   std::vector<double> process_ms, clock_ms;
   for (auto _ : state) {
-    const Taken taken = run(arguments);
-    if (!(taken.clock > 0)) {
+    const auto run = run_program(arguments);
+    if (!run) {
       state.SkipWithError("the program failed");
       break;
     }
-    state.SetIterationTime(taken.process);
-    process_ms.push_back(1e3 * taken.process);
-    clock_ms.push_back(1e3 * taken.clock);
+    state.SetIterationTime(run->processor);
+    process_ms.push_back(1e3 * run->processor);
+    clock_ms.push_back(1e3 * run->wall);
   }
   fs::remove_all(folder);
   if (process_ms.empty()) return;

@@ -123,7 +123,7 @@ void expect_hits_within_bound(const Make& make) {
     // on the surface
     const Vec3<double> hit = p + fast.path * d;
     EXPECT_NEAR(hit.z, static_cast<double>(conic.sag(Real50(hit.x), Real50(hit.y))), 2 * bound / std::abs(fast.normal.z)) << i;
-    // along = d.n, of the root: as the hit, in units of the radius
+    // along = d.n: by (4) n changes with the hit by 1 + |1+K| <= 5 times |c|, the rest is the rounding of the root, as the hit's
     EXPECT_NEAR(fast.along, static_cast<double>(exact.along), 8 * bound / scale) << i;
   }
   EXPECT_GT(hits, 9000);
