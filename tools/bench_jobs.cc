@@ -136,8 +136,9 @@ bool run_parts(Stopwatch& watch) {
       collectors[i].add(rays);
       watch.lap("spots");
     }
+  analysis::ZernikeFitter fitter(request.wavefront.indexing, request.wavefront.zernike_terms);
   for (const auto& result : report.results)
-    benchmark::DoNotOptimize(analysis::wavefront(scene, scene.wavelengths[result.wavelength], scene.fields[result.field], {}));
+    benchmark::DoNotOptimize(analysis::wavefront(scene, scene.wavelengths[result.wavelength], scene.fields[result.field], request.wavefront, fitter));
   watch.lap("wavefronts");
   const Folder folder;
   for (const bool is_spot : {true, false}) {

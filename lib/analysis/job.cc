@@ -170,11 +170,12 @@ std::vector<std::vector<JobResult>> run_jobs(std::span<const scene::Scene> scene
       result.rays = result.spot->rays;
     }
   }
+  ZernikeFitter fitter(request.wavefront.indexing, request.wavefront.zernike_terms);
   for (const auto& [scene, result] : tasks) {
     if (request.want_wavefront) {
       WavefrontRequest wanted = request.wavefront;
       wanted.thread_count = request.thread_count;
-      result->wavefront = wavefront(*scene, scene->wavelengths[result->wavelength], scene->fields[result->field], wanted);
+      result->wavefront = wavefront(*scene, scene->wavelengths[result->wavelength], scene->fields[result->field], wanted, fitter);
       if (!request.want_spot) result->rays = result->wavefront->rays;
     }
     result->coverage = coverage_of(*scene, result->rays);

@@ -5,12 +5,26 @@
 #include <cmath>
 #include <limits>
 
+#include "lib/numerics/instruction_set.h"
+#include "lib/numerics/lanes.h"
+
 namespace sagitta::analysis {
 namespace {
 
+using numerics::Lanes;
+using numerics::select;
+
 constexpr std::size_t block_size = numerics::ConvexHull::block_size;  // rays; their columns stay in the first-level cache
+constexpr std::size_t columns = numerics::ColumnSum::columns;         // as many as any vector holds, or more
 
 std::size_t area(int size) { return static_cast<std::size_t>(size) * static_cast<std::size_t>(size); }
+
+// The largest integer that is not above x, |x| < 2^31. 1.5 * 2^52 leaves no digits for fractions.
+template <class T>
+T floor_of(const T& x) {
+  const T nearest = (x + T(0x1.8p52)) - T(0x1.8p52);
+  return select(nearest > x, nearest - T(1), nearest);
+}
 
 }  // namespace
 
@@ -18,29 +32,32 @@ SpotImage::SpotImage(int image_size, double pixel, double x, double y)
     : size(image_size), pixel_mm(pixel), centre_x(x), centre_y(y), counts(area(image_size)), pixels_per_mm_(1 / pixel) {}
 
 void SpotImage::add(double x, double y) {
-  const double dx = x - centre_x, dy = y - centre_y;
-  add_from_centre(&dx, &dy, 1);
+  const double dx[]{x - centre_x, x - centre_x}, dy[]{y - centre_y, y - centre_y};
+  add_from_centre<2>(dx, dy, 1);
 }
 
+template <int n>
 void SpotImage::add_from_centre(const double* dx, const double* dy, std::size_t count) {
-  const int half = size / 2;
-  std::int32_t pixel[most_at_once];
+  using Vector = Lanes<n>;
+  const Vector half = size / 2, length = size;
   for (;;) {
-    const double scale = pixels_per_mm_;
-    int outside = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      const double right = dx[i] * scale, up = dy[i] * scale;
-      outside |= (right >= -half) & (right < half) & (up >= -half) & (up < half) ? 0 : 1;
+    const Vector scale = pixels_per_mm_;
+    auto inside = half == half;
+    for (std::size_t i = 0; i < count; i += n) {
+      const Vector right = Vector::load(dx + i) * scale, up = Vector::load(dy + i) * scale;
+      inside = inside & (right >= -half) & (right < half) & (up >= -half) & (up < half);
     }
-    if (outside == 0) break;
+    if (all(inside)) break;
     double_pixels();
   }
-  const double scale = pixels_per_mm_;  // halving keeps its digits
-  for (std::size_t i = 0; i < count; ++i) pixel[i] = (half - 1 - floor_of(dy[i] * scale)) * size + half + floor_of(dx[i] * scale);
+  const Vector scale = pixels_per_mm_;  // halving keeps its digits
+  std::int32_t pixel[block_size];
+  for (std::size_t i = 0; i < count; i += n)
+    ((half - Vector(1) - floor_of(Vector::load(dy + i) * scale)) * length + half + floor_of(Vector::load(dx + i) * scale)).store(pixel + i);
   for (std::size_t i = 0; i < count; ++i) ++counts[static_cast<std::size_t>(pixel[i])];
 }
 
-void SpotImage::double_pixels() {
+[[gnu::noinline]] void SpotImage::double_pixels() {
   std::vector<std::uint32_t> coarse(counts.size());
   const auto length = static_cast<std::size_t>(size), quarter = length / 4;
   // Pixel i stands i - size/2 pixels from the centre; size may be no multiple of 4, so halve that distance, not i.
@@ -57,34 +74,45 @@ void SpotCollector::add(const trace::RayBatch& rays) {
   for (std::size_t from = 0; from < rays.size(); from += block_size) add_block(rays, from, std::min(block_size, rays.size() - from));
 }
 
-// One loop for each purpose: those that can become vectors do.
 void SpotCollector::add_block(const trace::RayBatch& rays, std::size_t from, std::size_t count) {
   const double *x = &rays.x[from], *y = &rays.y[from];
   const std::int32_t* ended = &rays.ended[from];
-  double dx[block_size]{}, dy[block_size]{}, squares[block_size];
+  double arrived_x[block_size], arrived_y[block_size];
   std::int32_t any_ended = 0;
   for (std::size_t i = 0; i < count; ++i) any_ended |= ended[i];
-  const double centre_x = image_.centre_x, centre_y = image_.centre_y;
-  for (std::size_t i = 0; i < count; ++i) dx[i] = x[i] - centre_x, dy[i] = y[i] - centre_y;
-  if (any_ended == 0)
+  if (any_ended == 0) {
     rays_.of[static_cast<std::size_t>(surface::Status::ok)] += static_cast<std::int64_t>(count);
-  else
+  } else {
+    std::size_t arrived = 0;
     for (std::size_t i = 0; i < count; ++i) {
       rays_.add(ended[i]);
-      if (ended[i] != 0) dx[i] = dy[i] = 0;  // adds nothing to the sums
+      if (ended[i] == 0) arrived_x[arrived] = x[i], arrived_y[arrived] = y[i], ++arrived;
     }
-  for (std::size_t i = 0; i < count; ++i) squares[i] = dx[i] * dx[i] + dy[i] * dy[i];
-  x_.add(dx, count);
-  y_.add(dy, count);
-  squares_.add(squares, count);
-  std::size_t arrived = any_ended == 0 ? count : 0;
-  for (std::size_t i = arrived; i < count; ++i) {
-    if (ended[i] != 0) continue;
-    dx[arrived] = dx[i], dy[arrived] = dy[i];
-    ++arrived;
+    if (arrived == 0) return;
+    x = arrived_x, y = arrived_y, count = arrived;
   }
-  image_.add_from_centre(dx, dy, arrived);
-  hull_.add(dx, dy, arrived);
+
+  numerics::with_chosen_instructions_flat([&]<int n>() {
+    using Vector = Lanes<n>;
+    // From the image's centre, each ray where its column of the sums is, with 0 before and behind them.
+    constexpr std::size_t room = block_size + 2 * columns;
+    double dx[room], dy[room], squares[room];
+    const std::size_t first = column_, end = first + count, whole = (end + columns - 1) / columns * columns;
+    const double centre_x = image_.centre_x, centre_y = image_.centre_y;
+    for (std::size_t i = 0; i < columns; ++i) dx[i] = dy[i] = dx[whole - 1 - i] = dy[whole - 1 - i] = 0;
+    for (std::size_t i = 0; i < count; ++i) dx[first + i] = x[i] - centre_x, dy[first + i] = y[i] - centre_y;
+    for (std::size_t i = 0; i < whole; i += n) {
+      const Vector right = Vector::load(dx + i), up = Vector::load(dy + i);
+      (right * right + up * up).store(squares + i);
+    }
+    x_.add<n>(dx, whole);
+    y_.add<n>(dy, whole);
+    squares_.add<n>(squares, whole);
+    column_ = end % columns;
+    for (std::size_t i = end; i < end + columns; ++i) dx[i] = dx[end - 1], dy[i] = dy[end - 1];
+    image_.add_from_centre<n>(dx + first, dy + first, count);
+    hull_.add<n>(dx + first, dy + first, count);
+  });
 }
 
 Spot SpotCollector::spot() const {

@@ -11,8 +11,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "lib/numerics/column_sum.h"
 #include "lib/numerics/convex_hull.h"
-#include "lib/numerics/sum.h"
 #include "lib/trace/ray_batch.h"
 
 namespace sagitta::analysis {
@@ -33,18 +33,13 @@ struct SpotImage {
   SpotImage(int image_size, double pixel, double x, double y);
   // A ray beyond the edge doubles the pixels until it lies inside.
   void add(double x, double y);
-  // The same for rays given from the centre, at most `most_at_once`.
-  static constexpr std::size_t most_at_once = 256;
+  // The same for at most 256 rays given from the centre, in vectors of n (numerics/lanes.h): the last one's unused lanes hold
+  // rays of the set again, and do not count.
+  template <int n>
   void add_from_centre(const double* dx, const double* dy, std::size_t count);
   void double_pixels();
 
  private:
-  // std::floor of what an int holds, without a call of the library.
-  static int floor_of(double value) {
-    const int towards_zero = static_cast<int>(value);
-    return towards_zero - (value < towards_zero ? 1 : 0);
-  }
-
   double pixels_per_mm_;
 };
 
@@ -63,6 +58,7 @@ class SpotCollector {
   void add_block(const trace::RayBatch& rays, std::size_t from, std::size_t count);
 
   trace::StatusCounts rays_;
+  std::size_t column_ = 0;               // of the sums, where the next ray's terms go
   numerics::ColumnSum x_, y_, squares_;  // about the image's centre
   numerics::ConvexHull hull_;
   SpotImage image_;

@@ -70,7 +70,7 @@ std::vector<trace::PupilPoint> grid_points(int size, std::vector<std::uint32_t>&
   return points;
 }
 
-void measure(Wavefront& result, const std::vector<Sample>& samples, double wavelength_um, const WavefrontRequest& request) {
+void measure(Wavefront& result, const std::vector<Sample>& samples, double wavelength_um, ZernikeFitter& fitter) {
   numerics::Sum sum, squares;
   double low = samples.front().value, high = low;
   for (const Sample& sample : samples) {
@@ -83,7 +83,7 @@ void measure(Wavefront& result, const std::vector<Sample>& samples, double wavel
   for (const Sample& sample : samples) squares.add((sample.value - mean) * (sample.value - mean));
   result.rms_waves = std::sqrt(squares.value() / count) / wavelength_um;
   result.peak_to_valley_waves = (high - low) / wavelength_um;
-  result.zernike = fit_zernike(samples, request.indexing, request.zernike_terms);
+  result.zernike = fitter.fit(samples);
 }
 
 // Where the chief ray meets the image surface, and the sphere about that point; a reason where there is none.
@@ -111,6 +111,12 @@ ReferenceResult reference_sphere(const scene::Scene& scene, const scene::Wavelen
 
 WavefrontResult wavefront(const scene::Scene& scene, const scene::Wavelength& wavelength, const scene::Field& field,
                           const WavefrontRequest& request) {
+  ZernikeFitter fitter(request.indexing, request.zernike_terms);
+  return wavefront(scene, wavelength, field, request, fitter);
+}
+
+WavefrontResult wavefront(const scene::Scene& scene, const scene::Wavelength& wavelength, const scene::Field& field,
+                          const WavefrontRequest& request, ZernikeFitter& fitter) {
   Wavefront result;
   result.size = request.size;
   const std::vector<trace::PupilPoint> points = grid_points(request.size, result.mask);
@@ -138,7 +144,7 @@ WavefrontResult wavefront(const scene::Scene& scene, const scene::Wavelength& wa
   }
   const trace::StatusCounts counts = count_statuses(rays);
   if (samples.empty()) return {{}, "no ray of the pupil grid arrived", counts};
-  measure(result, samples, wavelength.wavelength_um, request);
+  measure(result, samples, wavelength.wavelength_um, fitter);
   return {std::move(result), {}, counts};
 }
 

@@ -57,5 +57,8 @@ struct WavefrontResult {
 
 WavefrontResult wavefront(const scene::Scene& scene, const scene::Wavelength& wavelength, const scene::Field& field,
                           const WavefrontRequest& request);
+// The same with a fitter of the request's terms that others have used before.
+WavefrontResult wavefront(const scene::Scene& scene, const scene::Wavelength& wavelength, const scene::Field& field,
+                          const WavefrontRequest& request, ZernikeFitter& fitter);
 
 }  // namespace sagitta::analysis

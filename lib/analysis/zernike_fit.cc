@@ -2,36 +2,51 @@
 #include "lib/analysis/zernike_fit.h"
 
 #include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
 
 #include "lib/numerics/sum.h"
 
 namespace sagitta::analysis {
 
-std::optional<ZernikeFit> fit_zernike(std::span<const Sample> samples, numerics::ZernikeIndexing indexing, int term_count) {
-  const auto sample_count = static_cast<Eigen::Index>(samples.size());
-  if (sample_count < term_count) return std::nullopt;
-  Eigen::MatrixXd basis(sample_count, term_count);
-  Eigen::VectorXd values(sample_count);
-  const int first = numerics::first_zernike_index(indexing);
-  for (int j = 0; j < term_count; ++j) {
-    const numerics::ZernikeTerm term = numerics::zernike_term(indexing, first + j);
-    for (Eigen::Index i = 0; i < sample_count; ++i) {
-      const Sample& sample = samples[static_cast<std::size_t>(i)];
-      basis(i, j) = numerics::zernike_value(indexing, term, sample.x, sample.y);
+// Of the matrix with a row for each sample and a column for each term.
+struct ZernikeFitter::Factors {
+  std::vector<Sample> samples;  // at these places
+  Eigen::MatrixXd basis;
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
+
+  Factors(std::span<const Sample> places, numerics::ZernikeIndexing indexing, int term_count)
+      : samples(places.begin(), places.end()), basis(places.size(), term_count) {
+    const int first = numerics::first_zernike_index(indexing);
+    for (int j = 0; j < term_count; ++j) {
+      const numerics::ZernikeTerm term = numerics::zernike_term(indexing, first + j);
+      Eigen::Index i = 0;
+      for (const Sample& place : places) basis(i++, j) = numerics::zernike_value(indexing, term, place.x, place.y);
     }
+    qr.compute(basis);
   }
-  for (Eigen::Index i = 0; i < sample_count; ++i) values(i) = samples[static_cast<std::size_t>(i)].value;
+  bool stand_at(std::span<const Sample> places) const {
+    return std::equal(samples.begin(), samples.end(), places.begin(), places.end(),
+                      [](const Sample& a, const Sample& b) { return a.x == b.x && a.y == b.y; });
+  }
+};
 
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(basis);
-  if (qr.rank() < term_count) return std::nullopt;
-  const Eigen::VectorXd solution = qr.solve(values);
-  const Eigen::VectorXd residual = values - basis * solution;
+ZernikeFitter::ZernikeFitter(numerics::ZernikeIndexing indexing, int term_count) : indexing_(indexing), term_count_(term_count) {}
+ZernikeFitter::~ZernikeFitter() = default;
 
-  ZernikeFit fit{indexing, std::vector<double>(solution.begin(), solution.end())};
+std::optional<ZernikeFit> ZernikeFitter::fit(std::span<const Sample> samples) {
+  if (samples.size() < static_cast<std::size_t>(term_count_)) return std::nullopt;
+  if (!factors_ || !factors_->stand_at(samples)) factors_ = std::make_unique<const Factors>(samples, indexing_, term_count_);
+  if (factors_->qr.rank() < term_count_) return std::nullopt;
+  Eigen::VectorXd values(factors_->basis.rows());
+  for (Eigen::Index i = 0; const Sample& sample : samples) values(i++) = sample.value;
+  const Eigen::VectorXd solution = factors_->qr.solve(values);
+  const Eigen::VectorXd residual = values - factors_->basis * solution;
+
+  ZernikeFit fit{indexing_, std::vector<double>(solution.begin(), solution.end())};
   numerics::Sum squares;
   for (const double r : residual) squares.add(r * r);
-  fit.residual_rms = std::sqrt(squares.value() / static_cast<double>(sample_count));
+  fit.residual_rms = std::sqrt(squares.value() / static_cast<double>(samples.size()));
   return fit;
 }
 

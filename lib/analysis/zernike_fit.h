@@ -7,6 +7,7 @@
 // from them.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -26,7 +27,21 @@ struct ZernikeFit {
   double residual_rms = 0;           // sqrt(mean (w - fit)^2)
 };
 
-// None where there are fewer samples than terms, or the samples do not determine every term.
-std::optional<ZernikeFit> fit_zernike(std::span<const Sample> samples, numerics::ZernikeIndexing indexing, int term_count);
+// Fits one after another. Samples at the same places as the last ones, as those of other wavelengths are, cost a tenth: the
+// factors of their matrix are kept, and the results have the same bits.
+class ZernikeFitter {
+ public:
+  ZernikeFitter(numerics::ZernikeIndexing indexing, int term_count);
+  ~ZernikeFitter();
+
+  // None where there are fewer samples than terms, or the samples do not determine every term.
+  std::optional<ZernikeFit> fit(std::span<const Sample> samples);
+
+ private:
+  struct Factors;
+  numerics::ZernikeIndexing indexing_;
+  int term_count_;
+  std::unique_ptr<const Factors> factors_;
+};
 
 }  // namespace sagitta::analysis

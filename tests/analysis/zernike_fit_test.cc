@@ -22,6 +22,10 @@ std::vector<Sample> grid(int half, double inner, const std::function<double(doub
   return samples;
 }
 
+std::optional<ZernikeFit> fit_zernike(const std::vector<Sample>& samples, ZernikeIndexing indexing, int term_count) {
+  return ZernikeFitter(indexing, term_count).fit(samples);
+}
+
 // Coefficients of order one, found again to the rounding of some 700 samples and the basis' condition of below 1e3.
 TEST(ZernikeFit, finds_known_coefficients_in_every_indexing) {
   for (const ZernikeIndexing indexing : {ZernikeIndexing::osa, ZernikeIndexing::noll, ZernikeIndexing::fringe}) {
@@ -72,6 +76,22 @@ TEST(ZernikeFit, residual_is_what_the_terms_leave) {
   EXPECT_NEAR(fit->residual_rms, std::sqrt(squares / static_cast<double>(samples.size())), 1e-14);
   EXPECT_GT(fit->residual_rms, 0.01);
   for (const double product : products) EXPECT_NEAR(product, 0, 1e-11);
+}
+
+// At the same places, at others, at fewer (which begin as the others do), and back.
+TEST(ZernikeFit, has_the_same_bits_whatever_the_fitter_did_before) {
+  const auto wave = [](double x, double y) { return std::sin(3 * x) + x * y; };
+  const auto other_wave = [](double x, double y) { return std::exp(x - y); };
+  std::vector<Sample> fewer = grid(15, 0, wave);
+  fewer.resize(fewer.size() - 40);
+  ZernikeFitter fitter(ZernikeIndexing::osa, 21);
+  for (const auto& samples : {grid(15, 0, wave), grid(15, 0, other_wave), fewer, grid(15, 0.5, wave), std::vector<Sample>{}, grid(15, 0, wave), grid(14, 0, wave)}) {
+    const auto again = fitter.fit(samples), fresh = fit_zernike(samples, ZernikeIndexing::osa, 21);
+    ASSERT_EQ(again.has_value(), fresh.has_value());
+    if (!fresh) continue;
+    EXPECT_EQ(again->coefficients, fresh->coefficients);
+    EXPECT_EQ(again->residual_rms, fresh->residual_rms);
+  }
 }
 
 TEST(ZernikeFit, is_none_where_the_samples_do_not_tell_the_terms_apart) {
