@@ -126,7 +126,10 @@ std::vector<GivenRay> read_given_rays(const std::string& file, double default_wa
       }
       const Cell& cell = cells[where[c]];
       const auto parsed = prescription::parse_number(cell.text);
-      if (!parsed.ok || !std::isfinite(parsed.value) || (c == wavelength_column && !(parsed.value > 0)))
+      if (parsed.ok && std::isfinite(parsed.value) && std::abs(parsed.value) > prescription::largest_number)
+        findings.error({file, number, cell.column}, fmt::format("{}: {} is larger than {:g}, beyond which products are infinite", column_names[c],
+                                                                prescription::excerpt(std::string(cell.text)), prescription::largest_number));
+      else if (!parsed.ok || !std::isfinite(parsed.value) || (c == wavelength_column && !(parsed.value > 0)))
         findings.error({file, number, cell.column},
                        fmt::format("{}: '{}' is not a {} number", column_names[c], prescription::excerpt(std::string(cell.text)),
                                    c == wavelength_column ? "positive finite" : "finite"));

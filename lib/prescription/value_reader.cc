@@ -98,6 +98,11 @@ void refuse(const YamlNode& node, const std::string& label, const std::string& l
 std::optional<double> read_number(const YamlNode& node, const std::string& label, const numerics::Range& range,
                                   Findings& findings) {
   const ParsedNumber parsed = is_plain(node) ? parse_number(node.text) : ParsedNumber{};
+  if (parsed.ok && std::isfinite(parsed.value) && std::abs(parsed.value) > largest_number) {
+    findings.error(node.place, fmt::format("{} must be at most {:g} in size, not {}", label, largest_number, shown(node)),
+                   "products of larger numbers are infinite, and rays could not be traced");
+    return std::nullopt;
+  }
   if (parsed.ok && range.contains(parsed.value)) return parsed.value;
   findings.error(node.place, fmt::format("{} must be {}, not {}", label, in_words(range), shown(node)),
                  !parsed.ok                                    ? number_hint(node)

@@ -46,4 +46,7 @@ struct ParsedNumber {
 };
 ParsedNumber parse_number(std::string_view text);
 
+// What rays start from or meet is at most so large: rays multiply it, and products of three such numbers are numbers still.
+inline constexpr double largest_number = 1e100;
+
 }  // namespace sagitta::prescription

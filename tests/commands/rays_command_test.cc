@@ -132,12 +132,13 @@ TEST(RaysCommand, all_errors_of_a_file_of_rays_come_with_their_places) {
     return run.err;
   };
   const std::string file = folder.path("r.csv");
-  const std::string several = errors("x_mm,y_mm,z_mm,l,m,n,wavelength_nm\n0,0,-5,0,0,1,543\n0,a,-5,0,0,1,543\n0,0,-5,0,0,2,543\n0,0,-5,0,0\n0,0,-5,0,0,1,-4\n0,nan,-5,0,0,1,550\n");
+  const std::string several = errors("x_mm,y_mm,z_mm,l,m,n,wavelength_nm\n0,0,-5,0,0,1,543\n0,a,-5,0,0,1,543\n0,0,-5,0,0,2,543\n0,0,-5,0,0\n0,0,-5,0,0,1,-4\n0,nan,-5,0,0,1,550\n-2e100,0,-5,0,0,1,550\n");
   EXPECT_THAT(several, HasSubstr(file + ":3:3: error: y_mm: 'a' is not a finite number"));
   EXPECT_THAT(several, HasSubstr(file + ":4:8: error: the direction (l, m, n) has the length 2"));
   EXPECT_THAT(several, HasSubstr(file + ":5:11: error: the line ends before the column 'n'"));
   EXPECT_THAT(several, HasSubstr(file + ":6:14: error: wavelength_nm: '-4' is not a positive finite number"));
   EXPECT_THAT(several, HasSubstr(file + ":7:3: error: y_mm: 'nan' is not a finite number"));
+  EXPECT_THAT(several, HasSubstr(file + ":8:1: error: x_mm: -2e100 is larger than 1e+100"));
   EXPECT_THAT(errors("x_mm,y_mm,z_mm,l,m\n0,0,0,0,0\n"), HasSubstr(file + ":1:1: error: no column 'n'"));
   EXPECT_THAT(errors(""), HasSubstr(file + ":1:1: error: the file is empty"));
   EXPECT_THAT(errors("x_mm,y_mm,z_mm,l,m,n\n"), HasSubstr("holds no ray"));
