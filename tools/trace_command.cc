@@ -34,8 +34,8 @@ int trace_command(const TraceOptions& options) {
   }
 
   bool all_written = true;
-  if (request->want_spot) all_written &= write_image("trace", folder / "spot", spot_parts(report), spot_figure(report));
-  if (request->want_wavefront) all_written &= write_image("trace", folder / "wavefront", wavefront_parts(report), wavefront_figure(report));
+  if (request->want_spot) all_written &= write_image("trace", folder / "spot", spot_parts(report), spot_figure(report), options.thread_count);
+  if (request->want_wavefront) all_written &= write_image("trace", folder / "wavefront", wavefront_parts(report), wavefront_figure(report), options.thread_count);
   const std::string summary = summary_json(report);
   all_written &= written("trace", output::write_file((folder / "summary.json").string(), summary));
   fmt::print("{}", options.json ? summary : summary_text(report));

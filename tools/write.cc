@@ -31,12 +31,13 @@ bool written(const char* command, const output::WriteResult& result) {
   return result.ok();
 }
 
-bool write_image(const char* command, const std::filesystem::path& base, std::vector<output::ExrPart> parts, const output::Figure& figure) {
+bool write_image(const char* command, const std::filesystem::path& base, std::vector<output::ExrPart> parts, const output::Figure& figure,
+                 int thread_count) {
   const Pictures* made = pictures(command);
   if (!made) return false;
   const output::Raster picture = made->render(figure);
   parts.insert(parts.begin(), made->preview_part(picture));
-  return written(command, made->write_exr(base.string() + ".exr", parts)) && written(command, made->write_png(base.string() + ".png", picture));
+  return written(command, made->write_exr(base.string() + ".exr", parts, thread_count)) && written(command, made->write_png(base.string() + ".png", picture));
 }
 
 bool write_picture(const char* command, const std::filesystem::path& file, const output::Figure& figure) {

@@ -18,9 +18,12 @@ struct Raster {
 };
 
 // The same picture gives the same bytes: no time stamp. An empty picture is an error.
+//
+// Source: Portable Network Graphics (PNG) Specification, 2nd edition, ISO/IEC 15948:2003.
 WriteResult write_png(const std::string& path, const Raster& raster);
 
-// The part "preview": channels R, G, B in linear light, 0 to 1, which is what EXR viewers expect.
+// The part "preview": channels R, G, B in linear light, 0 to 1, which is what EXR viewers expect. It refers to the picture,
+// which must outlive it.
 ExrPart preview_part(const Raster& raster);
 
 }  // namespace sagitta::output
