@@ -3,7 +3,7 @@
 #include <cairo.h>
 
 #include <algorithm>
-#include <cstring>
+#include <map>
 #include <utility>
 
 #include "lib/output/canvas_internal.h"
@@ -30,15 +30,51 @@ cairo_font_face_t* font_face() {
   return face;
 }
 
+cairo_font_options_t* font_options() {
+  static cairo_font_options_t* const options = [] {
+    cairo_font_options_t* made = cairo_font_options_create();
+    cairo_font_options_set_antialias(made, CAIRO_ANTIALIAS_GRAY);
+    cairo_font_options_set_hint_style(made, CAIRO_HINT_STYLE_NONE);
+    cairo_font_options_set_hint_metrics(made, CAIRO_HINT_METRICS_OFF);
+    return made;
+  }();
+  return options;
+}
+
 void set_font(cairo_t* context, double size) {
-  cairo_font_options_t* options = cairo_font_options_create();
-  cairo_font_options_set_antialias(options, CAIRO_ANTIALIAS_GRAY);
-  cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_NONE);
-  cairo_font_options_set_hint_metrics(options, CAIRO_HINT_METRICS_OFF);
-  cairo_set_font_options(context, options);
-  cairo_font_options_destroy(options);
+  cairo_set_font_options(context, font_options());
   cairo_set_font_face(context, font_face());
   cairo_set_font_size(context, size);
+}
+
+// How wide letters are in one size, each asked of Cairo once.
+class Widths {
+ public:
+  explicit Widths(double size) {
+    cairo_matrix_t scale, upright;
+    cairo_matrix_init_scale(&scale, size, size);
+    cairo_matrix_init_identity(&upright);
+    font_.reset(cairo_scaled_font_create(font_face(), &scale, &upright, font_options()));
+  }
+
+  double of(const std::string& letter) {
+    const auto [place, is_new] = known_.try_emplace(letter, 0);
+    if (is_new) {
+      cairo_text_extents_t extents;
+      cairo_scaled_font_text_extents(font_.get(), letter.c_str(), &extents);
+      place->second = extents.x_advance;
+    }
+    return place->second;
+  }
+
+ private:
+  std::unique_ptr<cairo_scaled_font_t, decltype(&cairo_scaled_font_destroy)> font_{nullptr, &cairo_scaled_font_destroy};
+  std::map<std::string, double> known_;
+};
+
+Widths& widths(double size) {
+  thread_local std::map<double, Widths> by_size;
+  return by_size.try_emplace(size, size).first->second;
 }
 
 void set_color(cairo_t* context, Rgb8 color) {
@@ -49,7 +85,9 @@ void set_color(cairo_t* context, Rgb8 color) {
 
 struct Canvas::Cairo {
   Cairo(int width, int height)
-      : surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height)), context(cairo_create(surface)) {
+      : raster{width, height, std::vector<std::uint32_t>(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), pixel_of({255, 255, 255}))},
+        surface(cairo_image_surface_create_for_data(reinterpret_cast<unsigned char*>(raster.pixels.data()), CAIRO_FORMAT_RGB24, width, height, 4 * width)),
+        context(cairo_create(surface)) {
     cairo_set_antialias(context, CAIRO_ANTIALIAS_BEST);
   }
   ~Cairo() {
@@ -64,21 +102,19 @@ struct Canvas::Cairo {
     cairo_set_dash(context, lengths, dashed ? 2 : 0, 0);
   }
 
+  Raster raster;  // what the surface draws on, a word a pixel as Cairo has it
   cairo_surface_t* surface;
   cairo_t* context;
 };
 
-Canvas::Canvas(int width, int height) : cairo_(std::make_unique<Cairo>(width, height)) {
-  fill({0, 0, double(width), double(height)}, {255, 255, 255});
-}
+Canvas::Canvas(int width, int height) : cairo_(std::make_unique<Cairo>(width, height)) {}
 Canvas::~Canvas() = default;
 
 double Canvas::text_width(std::string_view text, double size) {
-  const Cairo measure(1, 1);
-  set_font(measure.context, size);
-  cairo_text_extents_t extents;
-  cairo_text_extents(measure.context, std::string(text).c_str(), &extents);
-  return extents.x_advance;
+  Widths& of_size = widths(size);
+  double sum = 0;
+  for (const std::string& letter : characters(text)) sum += of_size.of(letter);
+  return sum;
 }
 
 std::vector<std::string> Canvas::wrap(std::string_view text, double size, double width) {
@@ -188,36 +224,17 @@ void Canvas::circle(double x, double y, double radius, double width, Rgb8 color,
   cairo_restore(context);
 }
 
-void Canvas::pixels(int x, int y, int width, const std::vector<Rgb8>& colors) {
+void Canvas::row(int x, int y, std::span<const std::uint32_t> pixels) {
+  Raster& raster = cairo_->raster;
   cairo_surface_flush(cairo_->surface);
-  unsigned char* data = cairo_image_surface_get_data(cairo_->surface);
-  if (data == nullptr || width < 1) return;
-  const std::ptrdiff_t stride = cairo_image_surface_get_stride(cairo_->surface);
-  const int height = static_cast<int>(colors.size()) / width;
-  auto color = colors.begin();
-  for (int j = 0; j < height; ++j)
-    for (int i = 0; i < width; ++i, ++color) {
-      const std::uint32_t packed = (std::uint32_t{(*color)[0]} << 16U) | (std::uint32_t{(*color)[1]} << 8U) | (*color)[2];
-      std::memcpy(data + (y + j) * stride + std::ptrdiff_t{4} * (x + i), &packed, sizeof packed);
-    }
-  cairo_surface_mark_dirty_rectangle(cairo_->surface, x, y, width, height);
+  std::copy(pixels.begin(), pixels.end(), raster.pixels.begin() + std::ptrdiff_t{y} * raster.width + x);
+  cairo_surface_mark_dirty_rectangle(cairo_->surface, x, y, static_cast<int>(pixels.size()), 1);
 }
 
-Raster Canvas::raster() const {
-  cairo_surface_flush(cairo_->surface);
-  const unsigned char* data = cairo_image_surface_get_data(cairo_->surface);
-  if (data == nullptr) return {};  // no memory for the sheet
-  const std::ptrdiff_t stride = cairo_image_surface_get_stride(cairo_->surface);
-  Raster raster{cairo_image_surface_get_width(cairo_->surface), cairo_image_surface_get_height(cairo_->surface), {}};
-  raster.rgb.reserve(std::size_t{3} * static_cast<std::size_t>(raster.width) * static_cast<std::size_t>(raster.height));
-  for (int y = 0; y < raster.height; ++y)
-    for (int x = 0; x < raster.width; ++x) {
-      std::uint32_t packed = 0;
-      std::memcpy(&packed, data + y * stride + 4 * x, sizeof packed);
-      for (const unsigned shift : {16U, 8U, 0U})
-        raster.rgb.push_back(static_cast<std::uint8_t>(packed >> shift & 0xFFU));
-    }
-  return raster;
+Raster Canvas::finish() {
+  if (cairo_surface_status(cairo_->surface) != CAIRO_STATUS_SUCCESS) return {};
+  cairo_surface_finish(cairo_->surface);
+  return std::move(cairo_->raster);
 }
 
 }  // namespace sagitta::output

@@ -175,8 +175,9 @@ class ChunkPacker {
       channel_start += width;
     }
     const auto* bytes = reinterpret_cast<const std::uint8_t*>(split_.data());
-    differences_[0] = bytes[0];
-    for (std::size_t i = 1; i < 4 * half; ++i) differences_[i] = static_cast<std::uint8_t>(bytes[i] - bytes[i - 1] + 128);
+    std::uint8_t* const differences = differences_.data();
+    differences[0] = bytes[0];
+    for (std::size_t i = 1; i < 4 * half; ++i) differences[i] = static_cast<std::uint8_t>(bytes[i] - bytes[i - 1] + 128);
 
     // A pixel to the left is two bytes back, the row above one row of all channels.
     ZlibStream stream(2, 2 * width * part.channels.size());

@@ -74,7 +74,7 @@ Raster render(const Figure& figure) {
     const double x = margin + left + static_cast<double>(i % columns) * (cell_width + gap);
     panels[i].draw(canvas, static_cast<int>(std::lround(x)), plot_top[i / columns], header_width);
   }
-  return canvas.raster();
+  return canvas.finish();
 }
 
 }  // namespace sagitta::output

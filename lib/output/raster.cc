@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstring>
 #include <limits>
@@ -33,14 +34,18 @@ std::string chunk(std::string_view type, std::string_view data) {
 // differences would only hide what repeats.
 std::string packed(const Raster& raster) {
   constexpr std::size_t rows_of_block = 64;
-  const std::size_t row_size = 3 * static_cast<std::size_t>(raster.width), line_size = row_size + 1;
+  const std::size_t line_size = 3 * static_cast<std::size_t>(raster.width) + 1;
   ZlibStream stream(3, line_size);
   std::vector<std::uint8_t> lines((rows_of_block + 1) * line_size);  // the line above the block, then the block
   const auto row_count = static_cast<std::size_t>(raster.height);
   for (std::size_t first = 0; first < row_count; first += rows_of_block) {
     const std::size_t rows = std::min(rows_of_block, row_count - first);
-    for (std::size_t row = 0; row < rows; ++row)
-      std::memcpy(lines.data() + (row + 1) * line_size + 1, raster.rgb.data() + (first + row) * row_size, row_size);
+    for (std::size_t row = 0; row < rows; ++row) {
+      const std::uint32_t* pixel = raster.pixels.data() + (first + row) * static_cast<std::size_t>(raster.width);
+      std::uint8_t* to = lines.data() + (row + 1) * line_size + 1;
+      for (int i = 0; i < raster.width; ++i, ++pixel, to += 3)
+        to[0] = static_cast<std::uint8_t>(*pixel >> 16U), to[1] = static_cast<std::uint8_t>(*pixel >> 8U), to[2] = static_cast<std::uint8_t>(*pixel);
+    }
     if (first == 0)
       stream.add({lines.data() + line_size, rows * line_size});
     else
@@ -54,7 +59,7 @@ std::string packed(const Raster& raster) {
 
 WriteResult write_png(const std::string& path, const Raster& raster) {
   if (raster.width < 1 || raster.height < 1 ||
-      raster.rgb.size() != std::size_t{3} * static_cast<std::size_t>(raster.width) * static_cast<std::size_t>(raster.height))
+      raster.pixels.size() != static_cast<std::size_t>(raster.width) * static_cast<std::size_t>(raster.height))
     return {path + ": the picture is empty"};
   const std::string data = packed(raster);
   if (data.size() > std::numeric_limits<std::int32_t>::max()) return {path + ": the picture is too large for PNG"};
@@ -70,9 +75,10 @@ ExrPart preview_part(const Raster& raster) {
     linear[i] = static_cast<float>(linear_from_srgb(static_cast<double>(i) / 255));
 
   ExrPart part{"preview", raster.width, raster.height, {}, {}};
-  const std::span<const std::uint8_t> rgb = raster.rgb;
+  static_assert(std::endian::native == std::endian::little, "blue is a pixel's first byte");
+  const std::span bytes(reinterpret_cast<const std::uint8_t*>(raster.pixels.data()), 4 * raster.pixels.size());
   for (std::size_t component = 0; component < 3; ++component)
-    part.channels.push_back({std::string(1, "RGB"[component]), ExrBytes{rgb.subspan(std::min(component, rgb.size())), 3, linear}});
+    part.channels.push_back({std::string(1, "BGR"[component]), ExrBytes{bytes.subspan(std::min(component, bytes.size())), 4, linear}});
   return part;
 }
 
