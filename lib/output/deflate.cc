@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "lib/output/deflate.h"
+
 #include <libdeflate.h>
 
 #include <algorithm>
@@ -8,8 +10,7 @@
 #include <limits>
 #include <utility>
 
-#include "lib/output/deflate_internal.h"
-#include "lib/output/huffman_internal.h"
+#include "lib/output/huffman.h"
 
 namespace sagitta::output {
 namespace {

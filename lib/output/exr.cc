@@ -12,7 +12,7 @@
 #include <stdexcept>
 
 #include "lib/numerics/parallel.h"
-#include "lib/output/deflate_internal.h"
+#include "lib/output/deflate.h"
 
 namespace sagitta::output {
 namespace {

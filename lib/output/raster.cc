@@ -12,7 +12,7 @@
 #include <string_view>
 
 #include "lib/output/color_map.h"
-#include "lib/output/deflate_internal.h"
+#include "lib/output/deflate.h"
 
 namespace sagitta::output {
 namespace {

@@ -18,9 +18,8 @@ constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 constexpr Rgb8 white{255, 255, 255};
 
 Rgb8 at(const Raster& raster, int x, int y) {
-  const std::size_t i =
-      3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(raster.width) + static_cast<std::size_t>(x));
-  return {raster.rgb[i], raster.rgb[i + 1], raster.rgb[i + 2]};
+  const std::uint32_t pixel = raster.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(raster.width) + static_cast<std::size_t>(x)];
+  return {static_cast<std::uint8_t>(pixel >> 16U), static_cast<std::uint8_t>(pixel >> 8U), static_cast<std::uint8_t>(pixel)};
 }
 
 struct Found {
@@ -102,7 +101,11 @@ TEST(Figure, TheSameFigureGivesTheSameBytesAndThePngHoldsItsPixels) {
   image.format = PNG_FORMAT_RGB;
   std::vector<std::uint8_t> pixels(PNG_IMAGE_SIZE(image));
   ASSERT_NE(png_image_finish_read(&image, nullptr, pixels.data(), 0, nullptr), 0);
-  EXPECT_EQ(pixels, raster.rgb);
+  std::vector<std::uint8_t> expected;
+  for (int y = 0; y < raster.height; ++y)
+    for (int x = 0; x < raster.width; ++x)
+      for (const std::uint8_t component : at(raster, x, y)) expected.push_back(component);
+  EXPECT_EQ(pixels, expected);
 }
 
 TEST(Figure, AnEmptyPictureIsAnErrorAndNoFile) {
@@ -240,18 +243,18 @@ TEST(Figure, NumbersThatAreNoneStillMakeAPicture) {
 }
 
 TEST(Preview, ItHoldsThePictureInLinearLightWithoutNaN) {
-  const Raster raster{2, 1, {0, 128, 255, 64, 1, 200}};
+  const Raster raster{2, 1, {0x0080FF, 0x4001C8}};
   const ExrPart part = preview_part(raster);
   EXPECT_EQ(part.name, "preview");
   ASSERT_EQ(part.channels.size(), 3U);
   for (std::size_t c = 0; c < 3; ++c) {
-    EXPECT_EQ(part.channels[c].name, std::string(1, "RGB"[c]));
+    EXPECT_EQ(part.channels[c].name, std::string(1, "BGR"[c]));
     const auto& pixels = std::get<ExrBytes>(part.channels[c].pixels);
     ASSERT_EQ(pixels.size(), 2U);
     for (std::size_t i = 0; i < 2; ++i) {
       const float value = pixels.values[pixels.bytes[pixels.step * i]];
       // Back to the bytes; 128 is 0.21586 in linear light.
-      EXPECT_EQ(std::lround(255 * srgb_from_linear(double(value))), raster.rgb[3 * i + c]);
+      EXPECT_EQ(std::lround(255 * srgb_from_linear(double(value))), at(raster, static_cast<int>(i), 0)[2 - c]);
       EXPECT_GE(value, 0);
       EXPECT_LE(value, 1);
     }

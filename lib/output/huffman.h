@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Huffman codes as DEFLATE has them (RFC 1951, 3.2.2): known by their lengths alone.
+// Huffman codes as DEFLATE has them (P. Deutsch, RFC 1951, 1996, 3.2.2): known by their lengths alone.
 #pragma once
 
 #include <algorithm>
