@@ -14,6 +14,7 @@
 #include "tools/commands.h"
 #include "tools/job_report.h"
 #include "tools/load.h"
+#include "tools/pictures.h"
 #include "tools/write.h"
 
 namespace sagitta::tools {
@@ -171,6 +172,7 @@ int compare_command(const CompareOptions& options) {
     models = make_variants(models.front().model, {options.surface, options.points, options.format, options.axes, kinds, options.radius_mm, options.smoothing_um, options.max_edge_mm});
     if (models.empty()) return 1;
   }
+  pictures("compare");
   make_names_unique(models);
   if (title.empty()) title = fmt::format("{} systems by the rays of {}", models.size(), models.front().name);
 

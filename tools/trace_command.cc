@@ -11,6 +11,7 @@
 #include "tools/commands.h"
 #include "tools/job_report.h"
 #include "tools/load.h"
+#include "tools/pictures.h"
 #include "tools/write.h"
 
 namespace sagitta::tools {
@@ -19,6 +20,7 @@ int trace_command(const TraceOptions& options) {
   if (!request) return 2;
   const auto model = load_model(options.system);
   if (!model) return 1;
+  pictures("trace");
   const std::filesystem::path folder(options.folder);
   request->want_spot = wants(options.only, "spot");
   request->want_wavefront = wants(options.only, "wavefront");

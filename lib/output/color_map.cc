@@ -90,7 +90,7 @@ Rgb8 exact_color(ColorMap map, double t) {
 }
 
 Rgb8 color(ColorMap map, double t) {
-  // Components change by 1200 at most from t = 0 to 1: by less than one from an entry to half way to the next.
+  // A component changes by 700 per t at most: from an entry half way to the next by 0.35.
   constexpr int last = 1024;
   using Table = std::array<Rgb8, last + 1>;
   const auto table_of = [](ColorMap which) {
