@@ -3,6 +3,8 @@
 #include <cairo.h>
 
 #include <algorithm>
+#include <cmath>
+#include <compare>
 #include <map>
 #include <utility>
 
@@ -15,6 +17,7 @@ namespace {
 
 // Half the height of the figures of DejaVu Sans, whose capitals and figures are 0.729 of the size.
 constexpr double half_height = 0.729 / 2;
+constexpr std::uint32_t white = 0xFFFFFF;
 
 // One face for the whole run: Cairo keeps scaled copies of it in a cache that outlives every sheet.
 cairo_font_face_t* font_face() {
@@ -73,7 +76,7 @@ class Widths {
 };
 
 Widths& widths(double size) {
-  thread_local std::map<double, Widths> by_size;
+  static std::map<double, Widths> by_size;
   return by_size.try_emplace(size, size).first->second;
 }
 
@@ -85,7 +88,7 @@ void set_color(cairo_t* context, Rgb8 color) {
 
 struct Canvas::Cairo {
   Cairo(int width, int height)
-      : raster{width, height, std::vector<std::uint32_t>(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), pixel_of({255, 255, 255}))},
+      : raster{width, height, std::vector<std::uint32_t>(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), white)},
         surface(cairo_image_surface_create_for_data(reinterpret_cast<unsigned char*>(raster.pixels.data()), CAIRO_FORMAT_RGB24, width, height, 4 * width)),
         context(cairo_create(surface)) {
     cairo_set_antialias(context, CAIRO_ANTIALIAS_BEST);
@@ -102,9 +105,61 @@ struct Canvas::Cairo {
     cairo_set_dash(context, lengths, dashed ? 2 : 0, 0);
   }
 
+  // Draws a line of text that begins at (x, y). On blank paper, where the same text has been drawn just so between the pixels, its
+  // pixels are copied: to fill outlines is most of the work of a sheet, and its axes are alike.
+  void letters(const std::string& text, double x, double y, double size, Rgb8 color) {
+    set_font(context, size);
+    set_color(context, color);
+    cairo_move_to(context, x, y);
+    cairo_text_path(context, text.c_str());
+    cairo_matrix_t matrix;
+    cairo_get_matrix(context, &matrix);
+    double x1 = 0, y1 = 0, x2 = 0, y2 = 0;
+    cairo_path_extents(context, &x1, &y1, &x2, &y2);
+    const int left = static_cast<int>(std::floor(x1)) - 1, right = static_cast<int>(std::ceil(x2)) + 1;
+    const int top = static_cast<int>(std::floor(y1)) - 1, bottom = static_cast<int>(std::ceil(y2)) + 1;
+    const bool is_upright = matrix.xy == 0 && matrix.yx == 0;
+    if (!is_upright || left < 0 || top < 0 || right > raster.width || bottom > raster.height || !is_blank(left, right, top, bottom)) {
+      cairo_fill(context);
+      return;
+    }
+    const auto between_pixels = [](double at) { return std::llround(1e9 * (at - std::floor(at))); };
+    const auto [drawn, is_new] = drawn_.try_emplace({text, size, color, between_pixels(x), between_pixels(y), right - left, bottom - top});
+    if (is_new) {
+      cairo_fill(context);
+      cairo_surface_flush(surface);
+      for (int row = top; row < bottom; ++row) drawn->second.insert(drawn->second.end(), pixel(left, row), pixel(right, row));
+      return;
+    }
+    cairo_new_path(context);
+    const std::ptrdiff_t width = right - left;
+    for (int row = top; row < bottom; ++row) std::copy_n(drawn->second.begin() + (row - top) * width, width, pixel(left, row));
+    cairo_surface_mark_dirty_rectangle(surface, left, top, right - left, bottom - top);
+  }
+
   Raster raster;  // what the surface draws on, a word a pixel as Cairo has it
   cairo_surface_t* surface;
   cairo_t* context;
+
+ private:
+  struct Label {
+    std::string text;
+    double size;
+    Rgb8 color;
+    long long x, y;  // between the pixels, in units of 1e-9
+    int width, height;
+    auto operator<=>(const Label&) const = default;
+  };
+
+  std::vector<std::uint32_t>::iterator pixel(int x, int y) { return raster.pixels.begin() + std::ptrdiff_t{y} * raster.width + x; }
+  bool is_blank(int left, int right, int top, int bottom) {
+    cairo_surface_flush(surface);
+    for (int row = top; row < bottom; ++row)
+      if (std::any_of(pixel(left, row), pixel(right, row), [](std::uint32_t one) { return one != white; })) return false;
+    return true;
+  }
+
+  std::map<Label, std::vector<std::uint32_t>> drawn_;
 };
 
 Canvas::Canvas(int width, int height) : cairo_(std::make_unique<Cairo>(width, height)) {}
@@ -151,16 +206,10 @@ void Canvas::text(std::string_view text, double x, double y, double size, Align 
     size *= most / width;
     width = most;
   }
-  cairo_t* context = cairo_->context;
-  set_font(context, size);
-  set_color(context, color);
-  cairo_move_to(context,
-                align == Align::left     ? x
-                : align == Align::center ? x - width / 2
-                                         : x - width,
-                y + half_height * size);
-  cairo_text_path(context, std::string(text).c_str());
-  cairo_fill(context);
+  const double left = align == Align::left     ? x
+                      : align == Align::center ? x - width / 2
+                                               : x - width;
+  cairo_->letters(std::string(text), left, y + half_height * size, size, color);
 }
 
 void Canvas::text_upward(std::string_view text, double x, double y, double size, Rgb8 color, double most) {
