@@ -56,6 +56,7 @@ constexpr Value value_of(unsigned v, unsigned k) {
 
 constexpr Value distance_value(unsigned distance) { return value_of(distance - 1, 1); }
 
+constexpr std::size_t bytes_as_they_are = 256;
 constexpr std::uint16_t end_of_block = 256;  // bytes are codes 0 to 255
 constexpr auto length_values = [] {
   std::array<Value, longest_match + 1> values{};
@@ -71,6 +72,8 @@ constexpr auto length_values = [] {
 
 void ZlibStream::find_tokens(std::span<const std::uint8_t> bytes, std::size_t from) {
   tokens_.clear();
+  symbol_counts_.fill(0);
+  distance_counts_.fill(0);
   seen_.assign(8192, never);
   for (std::size_t at = from; at < bytes.size();) {
     const std::uint8_t* here = bytes.data() + at;
@@ -87,25 +90,22 @@ void ZlibStream::find_tokens(std::span<const std::uint8_t> bytes, std::size_t fr
       if (seen != never) look_at(at - seen, std::max(least_far_match, length + 1));
       seen = static_cast<std::uint32_t>(at);
     }
-    if (length > 0)
-      tokens_.push_back({static_cast<std::uint16_t>(length), static_cast<std::uint16_t>(distance)});
-    else
-      tokens_.push_back({0, *here});
+    const std::size_t symbol = length > 0 ? bytes_as_they_are + length : *here;
+    tokens_.push_back({static_cast<std::uint16_t>(symbol), static_cast<std::uint16_t>(distance)});
+    ++symbol_counts_[symbol];
+    if (length > 0) ++distance_counts_[distance_value(static_cast<unsigned>(distance)).code];
     at += std::max<std::size_t>(1, length);
   }
 }
 
 void ZlibStream::write_block() {
   std::array<std::uint32_t, 286> counts{};
-  std::array<std::uint32_t, 30> distance_counts{};
   std::array<std::uint32_t, 19> length_counts{};
-  for (const Token& token : tokens_) {
-    ++counts[token.length == 0 ? token.value : length_values[token.length].code];
-    if (token.length > 0) ++distance_counts[distance_value(token.value).code];
-  }
+  std::copy_n(symbol_counts_.begin(), bytes_as_they_are, counts.begin());
+  for (std::size_t length = 3; length <= longest_match; ++length) counts[length_values[length].code] += symbol_counts_[bytes_as_they_are + length];
   counts[end_of_block] = 1;
   const auto codes = huffman_codes(counts, 15);
-  const auto distance_codes = huffman_codes(distance_counts, 15);
+  const auto distance_codes = huffman_codes(distance_counts_, 15);
   for (const std::uint8_t length : codes.length) ++length_counts[length];
   for (const std::uint8_t length : distance_codes.length) ++length_counts[length];
   const auto length_codes = huffman_codes(length_counts, 7);
@@ -121,10 +121,6 @@ void ZlibStream::write_block() {
     pending_count += bit_count;
   };
   const auto put_code = [&](const auto& all, std::size_t symbol) { put(all.code[symbol], all.length[symbol]); };
-  const auto put_value = [&](const auto& all, const Value& value) {
-    put_code(all, value.code);
-    put(value.extra, value.extra_bits);
-  };
   const auto flush = [&] {  // after at most 56 bits
     std::memcpy(to, &pending, sizeof pending);
     to += pending_count / 8;
@@ -138,13 +134,26 @@ void ZlibStream::write_block() {
   for (const std::size_t symbol : {16, 17, 18, 0, 8, 7, 9, 6, 10, 5, 11, 4, 12, 3, 13, 2, 14, 1, 15}) put(length_codes.length[symbol], 3), flush();
   for (const std::uint8_t length : codes.length) put_code(length_codes, length), flush();
   for (const std::uint8_t length : distance_codes.length) put_code(length_codes, length), flush();
+  // What stands for each symbol, and for each distance's code, the last of them for none: no branch depends on what comes next.
+  struct Bits {
+    std::uint32_t bits = 0, count = 0;
+  };
+  std::array<Bits, 256 + longest_match + 1> of_symbol{};
+  for (std::size_t byte = 0; byte < bytes_as_they_are; ++byte) of_symbol[byte] = {codes.code[byte], codes.length[byte]};
+  for (std::size_t length = 3; length <= longest_match; ++length) {
+    const Value& value = length_values[length];
+    const std::uint32_t count = codes.length[value.code];
+    of_symbol[bytes_as_they_are + length] = {codes.code[value.code] | std::uint32_t{value.extra} << count, count + value.extra_bits};
+  }
+  std::array<Bits, distance_codes.code.size() + 1> of_distance{};
+  for (std::size_t code = 0; code < distance_codes.code.size(); ++code) of_distance[code] = {distance_codes.code[code], distance_codes.length[code]};
   for (const Token& token : tokens_) {
-    if (token.length == 0) {
-      put_code(codes, token.value);
-    } else {
-      put_value(codes, length_values[token.length]);
-      put_value(distance_codes, distance_value(token.value));
-    }
+    const Value distance = distance_value(std::max<unsigned>(1, token.distance));
+    const Bits& symbol = of_symbol[token.symbol];
+    const Bits& code = of_distance[token.distance > 0 ? distance.code : of_distance.size() - 1];
+    put(symbol.bits, symbol.count);
+    put(code.bits, code.count);
+    put(distance.extra, distance.extra_bits);
     flush();
   }
   put_code(codes, end_of_block);

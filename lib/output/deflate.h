@@ -10,6 +10,7 @@
 // Source: RFC 1950 (zlib), P. Deutsch and J.-L. Gailly, and RFC 1951 (DEFLATE), P. Deutsch, 1996.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -31,8 +32,8 @@ class ZlibStream {
 
  private:
   struct Token {
-    std::uint16_t length;  // of a match; 0: a byte as it is
-    std::uint16_t value;   // the byte, or the match's distance
+    std::uint16_t symbol;    // a byte as it is, or 256 and the length of a match
+    std::uint16_t distance;  // of the match; of a byte 0
   };
 
   void find_tokens(std::span<const std::uint8_t> bytes, std::size_t from);
@@ -41,6 +42,8 @@ class ZlibStream {
   std::size_t near_, far_;
   std::vector<std::uint32_t> seen_;  // where the bytes of a key were last met
   std::vector<Token> tokens_;
+  std::array<std::uint32_t, 256 + 258 + 1> symbol_counts_{};
+  std::array<std::uint32_t, 30> distance_counts_{};  // by their codes
   std::string out_ = begin;
   std::uint64_t pending_ = 0;  // the bits that do not fill a byte yet
   unsigned pending_count_ = 0;
