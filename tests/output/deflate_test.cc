@@ -108,6 +108,16 @@ TEST(ZlibStream, WhatRepeatsAtTheGivenDistancesIsPackedAway) {
   EXPECT_LT(packed(flat, 1, 5000).size(), 1200U);  // 3876 matches of 2 bits
 }
 
+TEST(ZlibStream, WhatReturnsFromElsewhereIsFoundByItsFirstBytes) {
+  std::mt19937 random(6);
+  Bytes bytes(4000);
+  for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random());
+  bytes.insert(bytes.end(), bytes.begin(), bytes.begin() + 3000);  // 4000 back, at neither of the distances
+  const std::string stream = packed(bytes, 3, 100);
+  EXPECT_EQ(inflated(stream, bytes.size()), bytes);
+  EXPECT_LT(stream.size(), 4000U + 500);
+}
+
 // The bits that the best codes of all take: Huffman's own way, without a limit.
 std::uint64_t least_bits(const auto& counts) {
   std::priority_queue<std::uint64_t, std::vector<std::uint64_t>, std::greater<>> queue;

@@ -108,6 +108,34 @@ TEST(Figure, TheSameFigureGivesTheSameBytesAndThePngHoldsItsPixels) {
   EXPECT_EQ(pixels, expected);
 }
 
+// Where the first panel shows the second one's labels these are copied from there, and else they are drawn.
+TEST(Figure, ALabelThatIsCopiedIsTheOneThatIsDrawn) {
+  Panel panel = flat_panel(0.5), unlike = flat_panel(0.5);
+  panel.axes = {25, 25, 0, 0, true, "pupil x", "pupil y"};
+  panel.range = Range{0, 100};
+  unlike.axes = {0.25, 0.25, 0, 0, false, "u", "v"};
+  unlike.range = Range{0, 8};
+  unlike.title = "Other";
+  unlike.subtitle = {"words"};
+  unlike.quantity = "Q";
+  unlike.unit = "u";
+  const Raster copied = render({"", "", {panel, panel}, 2}), drawn = render({"", "", {unlike, panel}, 2});
+  ASSERT_EQ(copied.width, drawn.width);
+  ASSERT_EQ(copied.height, drawn.height);
+  int inked = 0, unlike_on_the_left = 0;
+  for (int y = 0; y < drawn.height; ++y)
+    for (int x = 0; x < drawn.width; ++x) {
+      if (x < drawn.width / 2) {
+        unlike_on_the_left += at(copied, x, y) != at(drawn, x, y);
+        continue;
+      }
+      inked += at(drawn, x, y) != white;
+      ASSERT_EQ(at(copied, x, y), at(drawn, x, y)) << x << " " << y;
+    }
+  EXPECT_GT(inked, 384 * 384);
+  EXPECT_GT(unlike_on_the_left, 1000);
+}
+
 TEST(Figure, AnEmptyPictureIsAnErrorAndNoFile) {
   const TestFolder folder;
   EXPECT_EQ(write_png(folder / "a.png", {}).error, (folder / "a.png") + ": the picture is empty");
