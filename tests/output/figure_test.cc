@@ -136,6 +136,25 @@ TEST(Figure, ALabelThatIsCopiedIsTheOneThatIsDrawn) {
   EXPECT_GT(unlike_on_the_left, 1000);
 }
 
+// Of a plot 24 pixels wide the labels -5000 and 0 overlap; where the first panel has a 0 that stands alone, that is not copied.
+TEST(Figure, ALabelOverAnotherIsNotCopied) {
+  Panel narrow = flat_panel(0.5), wide = flat_panel(0.5);
+  narrow.map = {2, 32, std::vector<float>(64, 0.5F)};
+  narrow.axes = {5000, 5000, -2500, 0, false, "", ""};
+  wide.axes = {1250, 1250, -2500, 0, false, "", ""};
+  const Raster with_zero = render({"", "", {wide, narrow}, 2});
+  wide.axes.center_x = 50000;
+  const Raster without_zero = render({"", "", {wide, narrow}, 2});
+  ASSERT_EQ(with_zero.width, without_zero.width);
+  int inked = 0;
+  for (int y = 0; y < with_zero.height; ++y)
+    for (int x = with_zero.width / 2; x < with_zero.width; ++x) {
+      ASSERT_EQ(at(with_zero, x, y), at(without_zero, x, y)) << x << " " << y;
+      inked += at(with_zero, x, y) != white;
+    }
+  EXPECT_GT(inked, 24 * 384);
+}
+
 TEST(Figure, AnEmptyPictureIsAnErrorAndNoFile) {
   const TestFolder folder;
   EXPECT_EQ(write_png(folder / "a.png", {}).error, (folder / "a.png") + ": the picture is empty");
