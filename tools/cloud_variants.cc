@@ -23,7 +23,7 @@ using prescription::Findings;
 using prescription::Shape;
 
 constexpr double margin = 1.05;
-const prescription::Place on_command_line{"--with", 0, 0};
+const prescription::Place on_command_line{"--with", -1, 0};
 
 double data_radius(const prescription::PointCloud& cloud) {
   double radius = 0;

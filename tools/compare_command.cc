@@ -14,6 +14,7 @@
 #include "tools/commands.h"
 #include "tools/job_report.h"
 #include "tools/load.h"
+#include "tools/pictures.h"
 #include "tools/write.h"
 
 namespace sagitta::tools {
@@ -123,12 +124,12 @@ output::Comparison compare(const std::vector<ComparedModel>& models, CompiledSys
   return comparison;
 }
 
-bool write_all(const fs::path& folder, const output::Comparison& comparison, const std::string& summary) {
+bool write_all(const fs::path& folder, const output::Comparison& comparison, const std::string& summary, int thread_count) {
   const std::vector<output::Figure> figures = sheets(comparison);
   const auto sheet_of = [&](std::size_t field) { return folder / fmt::format("comparison.field{}.png", field); };
   std::error_code none_there;
   for (std::size_t field = figures.size(); fs::remove(sheet_of(field), none_there); ++field) {}  // of an earlier run
-  bool all_written = write_image("compare", folder / "comparison", parts(comparison), figures.front());
+  bool all_written = write_image("compare", folder / "comparison", parts(comparison), figures.front(), thread_count);
   for (std::size_t field = 1; field < figures.size(); ++field)
     all_written &= write_picture("compare", sheet_of(field), figures[field]);
   return written("compare", output::write_file((folder / "summary.json").string(), summary)) && all_written;
@@ -171,6 +172,7 @@ int compare_command(const CompareOptions& options) {
     models = make_variants(models.front().model, {options.surface, options.points, options.format, options.axes, kinds, options.radius_mm, options.smoothing_um, options.max_edge_mm});
     if (models.empty()) return 1;
   }
+  pictures("compare");
   make_names_unique(models);
   if (title.empty()) title = fmt::format("{} systems by the rays of {}", models.size(), models.front().name);
 
@@ -191,7 +193,7 @@ int compare_command(const CompareOptions& options) {
   comparison.title = title;
 
   const std::string summary = summary_json(comparison);
-  const bool all_written = write_all(folder, comparison, summary);
+  const bool all_written = write_all(folder, comparison, summary, options.thread_count);
   fmt::print("{}", options.json ? summary : summary_text(comparison));
   bool all_arrived = true;
   for (const output::ComparedSystem& system : comparison.systems) {

@@ -53,7 +53,7 @@ int fit_command(const FitOptions& options) {
   }
   if (!make_folder("fit", fragment.parent_path())) return 1;
   // The fragment last: where it is there, all of it is.
-  const bool map_written = !result.map || write_image("fit", base, {residual_part(result)}, residual_figure(result));
+  const bool map_written = !result.map || write_image("fit", base, {residual_part(result)}, residual_figure(result), 0);
   return map_written && written("fit", output::write_file(fragment.string(), fit_fragment(result))) ? 0 : 1;
 }
 

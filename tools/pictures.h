@@ -17,7 +17,8 @@ struct Pictures {
   decltype(&output::write_png) write_png;
 };
 
-// Null where the module cannot be loaded; the first time with a message that names the command.
+// Null where the module cannot be loaded; the first time with a message that names the command. A command that is going to make
+// pictures asks before it traces, so that nobody waits for hours to be told.
 const Pictures* pictures(const char* command);
 
 }  // namespace sagitta::tools

@@ -6,11 +6,13 @@
 #include <filesystem>
 
 #include "lib/analysis/job.h"
+#include "lib/numerics/parallel.h"
 #include "lib/output/atomic_file.h"
 #include "lib/output/report.h"
 #include "tools/commands.h"
 #include "tools/job_report.h"
 #include "tools/load.h"
+#include "tools/pictures.h"
 #include "tools/write.h"
 
 namespace sagitta::tools {
@@ -19,6 +21,7 @@ int trace_command(const TraceOptions& options) {
   if (!request) return 2;
   const auto model = load_model(options.system);
   if (!model) return 1;
+  pictures("trace");
   const std::filesystem::path folder(options.folder);
   request->want_spot = wants(options.only, "spot");
   request->want_wavefront = wants(options.only, "wavefront");
@@ -33,9 +36,18 @@ int trace_command(const TraceOptions& options) {
     if (!leaves_a_part(report)) break;
   }
 
-  bool all_written = true;
-  if (request->want_spot) all_written &= write_image("trace", folder / "spot", spot_parts(report), spot_figure(report));
-  if (request->want_wavefront) all_written &= write_image("trace", folder / "wavefront", wavefront_parts(report), wavefront_figure(report));
+  bool spots_are_written = true, wavefronts_are_written = true;
+  numerics::do_both(
+      options.thread_count,
+      [&] {
+        if (request->want_spot)
+          spots_are_written = write_image("trace", folder / "spot", spot_parts(report), spot_figure(report), options.thread_count);
+      },
+      [&] {
+        if (request->want_wavefront)
+          wavefronts_are_written = write_image("trace", folder / "wavefront", wavefront_parts(report), wavefront_figure(report), options.thread_count);
+      });
+  bool all_written = spots_are_written && wavefronts_are_written;
   const std::string summary = summary_json(report);
   all_written &= written("trace", output::write_file((folder / "summary.json").string(), summary));
   fmt::print("{}", options.json ? summary : summary_text(report));

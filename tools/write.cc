@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include "lib/numerics/parallel.h"
 #include "tools/pictures.h"
 
 namespace sagitta::tools {
@@ -31,12 +32,17 @@ bool written(const char* command, const output::WriteResult& result) {
   return result.ok();
 }
 
-bool write_image(const char* command, const std::filesystem::path& base, std::vector<output::ExrPart> parts, const output::Figure& figure) {
+bool write_image(const char* command, const std::filesystem::path& base, std::vector<output::ExrPart> parts, const output::Figure& figure,
+                 int thread_count) {
   const Pictures* made = pictures(command);
   if (!made) return false;
   const output::Raster picture = made->render(figure);
   parts.insert(parts.begin(), made->preview_part(picture));
-  return written(command, made->write_exr(base.string() + ".exr", parts)) && written(command, made->write_png(base.string() + ".png", picture));
+  output::WriteResult exr, png;
+  numerics::do_both(
+      thread_count, [&] { exr = made->write_exr(base.string() + ".exr", parts, thread_count); }, [&] { png = made->write_png(base.string() + ".png", picture); });
+  const bool exr_is_written = written(command, exr);
+  return written(command, png) && exr_is_written;
 }
 
 bool write_picture(const char* command, const std::filesystem::path& file, const output::Figure& figure) {

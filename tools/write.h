@@ -21,8 +21,8 @@ bool overwrites(const char* command, const std::string& option, const std::files
 // True if it was written.
 bool written(const char* command, const output::WriteResult& result);
 
-// BASE.exr, the figure as its preview before the parts, and BASE.png.
-bool write_image(const char* command, const std::filesystem::path& base, std::vector<output::ExrPart> parts, const output::Figure& figure);
+// BASE.exr, the figure as its preview before the parts, and BASE.png. thread_count 0: as many threads as the machine runs.
+bool write_image(const char* command, const std::filesystem::path& base, std::vector<output::ExrPart> parts, const output::Figure& figure, int thread_count);
 
 // The figure alone, as a PNG.
 bool write_picture(const char* command, const std::filesystem::path& file, const output::Figure& figure);

@@ -39,4 +39,17 @@ void share_blocks(std::size_t block_count, int thread_count, const MakeWorker& m
   work();
 }
 
+// Both, at the same time where more than one thread is asked for.
+template <class First, class Second>
+void do_both(int thread_count, const First& first, const Second& second) {
+  std::jthread helper;
+  try {
+    if (thread_count_of(thread_count) > 1) helper = std::jthread(second);
+  } catch (const std::system_error&) {
+    // as in share_blocks
+  }
+  first();
+  if (!helper.joinable()) second();
+}
+
 }  // namespace sagitta::numerics

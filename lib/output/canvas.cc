@@ -3,7 +3,9 @@
 #include <cairo.h>
 
 #include <algorithm>
-#include <cstring>
+#include <cmath>
+#include <compare>
+#include <map>
 #include <utility>
 
 #include "lib/output/canvas_internal.h"
@@ -15,6 +17,7 @@ namespace {
 
 // Half the height of the figures of DejaVu Sans, whose capitals and figures are 0.729 of the size.
 constexpr double half_height = 0.729 / 2;
+constexpr std::uint32_t white = 0xFFFFFF;
 
 // One face for the whole run: Cairo keeps scaled copies of it in a cache that outlives every sheet.
 cairo_font_face_t* font_face() {
@@ -30,15 +33,51 @@ cairo_font_face_t* font_face() {
   return face;
 }
 
+cairo_font_options_t* font_options() {
+  static cairo_font_options_t* const options = [] {
+    cairo_font_options_t* made = cairo_font_options_create();
+    cairo_font_options_set_antialias(made, CAIRO_ANTIALIAS_GRAY);
+    cairo_font_options_set_hint_style(made, CAIRO_HINT_STYLE_NONE);
+    cairo_font_options_set_hint_metrics(made, CAIRO_HINT_METRICS_OFF);
+    return made;
+  }();
+  return options;
+}
+
 void set_font(cairo_t* context, double size) {
-  cairo_font_options_t* options = cairo_font_options_create();
-  cairo_font_options_set_antialias(options, CAIRO_ANTIALIAS_GRAY);
-  cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_NONE);
-  cairo_font_options_set_hint_metrics(options, CAIRO_HINT_METRICS_OFF);
-  cairo_set_font_options(context, options);
-  cairo_font_options_destroy(options);
+  cairo_set_font_options(context, font_options());
   cairo_set_font_face(context, font_face());
   cairo_set_font_size(context, size);
+}
+
+// How wide letters are in one size, each asked of Cairo once.
+class Widths {
+ public:
+  explicit Widths(double size) {
+    cairo_matrix_t scale, upright;
+    cairo_matrix_init_scale(&scale, size, size);
+    cairo_matrix_init_identity(&upright);
+    font_.reset(cairo_scaled_font_create(font_face(), &scale, &upright, font_options()));
+  }
+
+  double of(const std::string& letter) {
+    const auto [place, is_new] = known_.try_emplace(letter, 0);
+    if (is_new) {
+      cairo_text_extents_t extents;
+      cairo_scaled_font_text_extents(font_.get(), letter.c_str(), &extents);
+      place->second = extents.x_advance;
+    }
+    return place->second;
+  }
+
+ private:
+  std::unique_ptr<cairo_scaled_font_t, decltype(&cairo_scaled_font_destroy)> font_{nullptr, &cairo_scaled_font_destroy};
+  std::map<std::string, double> known_;
+};
+
+Widths& widths(double size) {
+  static std::map<double, Widths> by_size;
+  return by_size.try_emplace(size, size).first->second;
 }
 
 void set_color(cairo_t* context, Rgb8 color) {
@@ -49,7 +88,9 @@ void set_color(cairo_t* context, Rgb8 color) {
 
 struct Canvas::Cairo {
   Cairo(int width, int height)
-      : surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height)), context(cairo_create(surface)) {
+      : raster{width, height, std::vector<std::uint32_t>(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), white)},
+        surface(cairo_image_surface_create_for_data(reinterpret_cast<unsigned char*>(raster.pixels.data()), CAIRO_FORMAT_RGB24, width, height, 4 * width)),
+        context(cairo_create(surface)) {
     cairo_set_antialias(context, CAIRO_ANTIALIAS_BEST);
   }
   ~Cairo() {
@@ -64,21 +105,71 @@ struct Canvas::Cairo {
     cairo_set_dash(context, lengths, dashed ? 2 : 0, 0);
   }
 
+  // Draws a line of text that begins at (x, y). On blank paper, where the same text has been drawn just so between the pixels, its
+  // pixels are copied: to fill outlines is most of the work of a sheet, and its axes are alike.
+  void letters(const std::string& text, double x, double y, double size, Rgb8 color) {
+    set_font(context, size);
+    set_color(context, color);
+    cairo_move_to(context, x, y);
+    cairo_text_path(context, text.c_str());
+    cairo_matrix_t matrix;
+    cairo_get_matrix(context, &matrix);
+    double x1 = 0, y1 = 0, x2 = 0, y2 = 0;
+    cairo_path_extents(context, &x1, &y1, &x2, &y2);
+    const int left = static_cast<int>(std::floor(x1)) - 1, right = static_cast<int>(std::ceil(x2)) + 1;
+    const int top = static_cast<int>(std::floor(y1)) - 1, bottom = static_cast<int>(std::ceil(y2)) + 1;
+    const bool is_upright = matrix.xy == 0 && matrix.yx == 0;
+    if (!is_upright || left < 0 || top < 0 || right > raster.width || bottom > raster.height || !is_blank(left, right, top, bottom)) {
+      cairo_fill(context);
+      return;
+    }
+    const auto between_pixels = [](double at) { return std::llround(1e9 * (at - std::floor(at))); };
+    const auto [drawn, is_new] = drawn_.try_emplace({text, size, color, between_pixels(x), between_pixels(y), right - left, bottom - top});
+    if (is_new) {
+      cairo_fill(context);
+      cairo_surface_flush(surface);
+      for (int row = top; row < bottom; ++row) drawn->second.insert(drawn->second.end(), pixel(left, row), pixel(right, row));
+      return;
+    }
+    cairo_new_path(context);
+    const std::ptrdiff_t width = right - left;
+    for (int row = top; row < bottom; ++row) std::copy_n(drawn->second.begin() + (row - top) * width, width, pixel(left, row));
+    cairo_surface_mark_dirty_rectangle(surface, left, top, right - left, bottom - top);
+  }
+
+  Raster raster;  // what the surface draws on, a word a pixel as Cairo has it
   cairo_surface_t* surface;
   cairo_t* context;
+
+ private:
+  struct Label {
+    std::string text;
+    double size;
+    Rgb8 color;
+    long long x, y;  // between the pixels, in units of 1e-9
+    int width, height;
+    auto operator<=>(const Label&) const = default;
+  };
+
+  std::vector<std::uint32_t>::iterator pixel(int x, int y) { return raster.pixels.begin() + std::ptrdiff_t{y} * raster.width + x; }
+  bool is_blank(int left, int right, int top, int bottom) {
+    cairo_surface_flush(surface);
+    for (int row = top; row < bottom; ++row)
+      if (std::any_of(pixel(left, row), pixel(right, row), [](std::uint32_t one) { return one != white; })) return false;
+    return true;
+  }
+
+  std::map<Label, std::vector<std::uint32_t>> drawn_;
 };
 
-Canvas::Canvas(int width, int height) : cairo_(std::make_unique<Cairo>(width, height)) {
-  fill({0, 0, double(width), double(height)}, {255, 255, 255});
-}
+Canvas::Canvas(int width, int height) : cairo_(std::make_unique<Cairo>(width, height)) {}
 Canvas::~Canvas() = default;
 
 double Canvas::text_width(std::string_view text, double size) {
-  const Cairo measure(1, 1);
-  set_font(measure.context, size);
-  cairo_text_extents_t extents;
-  cairo_text_extents(measure.context, std::string(text).c_str(), &extents);
-  return extents.x_advance;
+  Widths& of_size = widths(size);
+  double sum = 0;
+  for (const std::string& letter : characters(text)) sum += of_size.of(letter);
+  return sum;
 }
 
 std::vector<std::string> Canvas::wrap(std::string_view text, double size, double width) {
@@ -115,16 +206,10 @@ void Canvas::text(std::string_view text, double x, double y, double size, Align 
     size *= most / width;
     width = most;
   }
-  cairo_t* context = cairo_->context;
-  set_font(context, size);
-  set_color(context, color);
-  cairo_move_to(context,
-                align == Align::left     ? x
-                : align == Align::center ? x - width / 2
-                                         : x - width,
-                y + half_height * size);
-  cairo_text_path(context, std::string(text).c_str());
-  cairo_fill(context);
+  const double left = align == Align::left     ? x
+                      : align == Align::center ? x - width / 2
+                                               : x - width;
+  cairo_->letters(std::string(text), left, y + half_height * size, size, color);
 }
 
 void Canvas::text_upward(std::string_view text, double x, double y, double size, Rgb8 color, double most) {
@@ -188,36 +273,17 @@ void Canvas::circle(double x, double y, double radius, double width, Rgb8 color,
   cairo_restore(context);
 }
 
-void Canvas::pixels(int x, int y, int width, const std::vector<Rgb8>& colors) {
+void Canvas::row(int x, int y, std::span<const std::uint32_t> pixels) {
+  Raster& raster = cairo_->raster;
   cairo_surface_flush(cairo_->surface);
-  unsigned char* data = cairo_image_surface_get_data(cairo_->surface);
-  if (data == nullptr || width < 1) return;
-  const std::ptrdiff_t stride = cairo_image_surface_get_stride(cairo_->surface);
-  const int height = static_cast<int>(colors.size()) / width;
-  auto color = colors.begin();
-  for (int j = 0; j < height; ++j)
-    for (int i = 0; i < width; ++i, ++color) {
-      const std::uint32_t packed = (std::uint32_t{(*color)[0]} << 16U) | (std::uint32_t{(*color)[1]} << 8U) | (*color)[2];
-      std::memcpy(data + (y + j) * stride + std::ptrdiff_t{4} * (x + i), &packed, sizeof packed);
-    }
-  cairo_surface_mark_dirty_rectangle(cairo_->surface, x, y, width, height);
+  std::copy(pixels.begin(), pixels.end(), raster.pixels.begin() + std::ptrdiff_t{y} * raster.width + x);
+  cairo_surface_mark_dirty_rectangle(cairo_->surface, x, y, static_cast<int>(pixels.size()), 1);
 }
 
-Raster Canvas::raster() const {
-  cairo_surface_flush(cairo_->surface);
-  const unsigned char* data = cairo_image_surface_get_data(cairo_->surface);
-  if (data == nullptr) return {};  // no memory for the sheet
-  const std::ptrdiff_t stride = cairo_image_surface_get_stride(cairo_->surface);
-  Raster raster{cairo_image_surface_get_width(cairo_->surface), cairo_image_surface_get_height(cairo_->surface), {}};
-  raster.rgb.reserve(std::size_t{3} * static_cast<std::size_t>(raster.width) * static_cast<std::size_t>(raster.height));
-  for (int y = 0; y < raster.height; ++y)
-    for (int x = 0; x < raster.width; ++x) {
-      std::uint32_t packed = 0;
-      std::memcpy(&packed, data + y * stride + 4 * x, sizeof packed);
-      for (const unsigned shift : {16U, 8U, 0U})
-        raster.rgb.push_back(static_cast<std::uint8_t>(packed >> shift & 0xFFU));
-    }
-  return raster;
+Raster Canvas::finish() {
+  if (cairo_surface_status(cairo_->surface) != CAIRO_STATUS_SUCCESS) return {};
+  cairo_surface_finish(cairo_->surface);
+  return std::move(cairo_->raster);
 }
 
 }  // namespace sagitta::output

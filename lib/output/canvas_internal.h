@@ -3,7 +3,9 @@
 // y grows downward. Letters are filled outlines, unhinted: the same picture on every machine.
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,9 +41,10 @@ class Canvas {
   void frame(const Box& box, Rgb8 color);  // one pixel wide, just outside the box
   void line(double x1, double y1, double x2, double y2, double width, Rgb8 color, bool dashed = false);
   void circle(double x, double y, double radius, double width, Rgb8 color, bool dashed, const Box& inside);
-  void pixels(int x, int y, int width, const std::vector<Rgb8>& colors);  // row by row, from the corner (x, y) on
+  void row(int x, int y, std::span<const std::uint32_t> pixels);  // from (x, y) to the right
 
-  Raster raster() const;
+  // The picture, and the end of the canvas. Empty where it is too large for Cairo.
+  Raster finish();
 
  private:
   struct Cairo;

@@ -83,10 +83,29 @@ double srgb_from_linear(double linear) {
   return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
 }
 
-Rgb8 color(ColorMap map, double t) {
+Rgb8 exact_color(ColorMap map, double t) {
   if (std::isnan(t)) return no_data_color;
   const std::array<double, 3> linear = linear_srgb(oklab_color(map, t));
   return {byte(srgb_from_linear(linear[0])), byte(srgb_from_linear(linear[1])), byte(srgb_from_linear(linear[2]))};
+}
+
+Rgb8 color(ColorMap map, double t) {
+  // A component changes by 700 per t at most: from an entry half way to the next by 0.35.
+  constexpr int last = 1024;
+  using Table = std::array<Rgb8, last + 1>;
+  const auto table_of = [](ColorMap which) {
+    Table table;
+    for (int i = 0; i <= last; ++i) table[static_cast<std::size_t>(i)] = exact_color(which, double(i) / last);
+    return table;
+  };
+  if (std::isnan(t)) return no_data_color;
+  const auto entry = static_cast<std::size_t>(std::clamp(t, 0.0, 1.0) * last + 0.5);
+  if (map == ColorMap::sequential) {
+    static const Table sequential = table_of(map);
+    return sequential[entry];
+  }
+  static const Table diverging = table_of(map);
+  return diverging[entry];
 }
 
 }  // namespace sagitta::output

@@ -27,7 +27,9 @@ struct Oklab {
 // The colour of t in [0, 1]; beyond, that of the nearer end. t must not be NaN.
 Oklab oklab_color(ColorMap map, double t);
 
-// The same in encoded sRGB; NaN, "no data", is a neutral grey.
+// The same in encoded sRGB, every component the nearest of 0 to 255; NaN, "no data", is a neutral grey.
+Rgb8 exact_color(ColorMap map, double t);
+// The same from a table, for pictures: no component is off by more than 1.
 Rgb8 color(ColorMap map, double t);
 inline constexpr Rgb8 no_data_color{217, 217, 217};
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 
 #include "lib/output/canvas_internal.h"
 #include "lib/output/panel_internal.h"
@@ -19,6 +20,8 @@ constexpr double margin = 22, gap = 22;  // around the sheet and between panels
 }  // namespace
 
 Raster render(const Figure& figure) {
+  static std::mutex one_at_a_time;  // Cairo, FreeType and what is kept of letters are shared
+  const std::lock_guard lock(one_at_a_time);
   const std::size_t panel_count = std::min(figure.panels.size(), most_panels);
   const std::size_t least_columns = (panel_count + most_rows - 1) / most_rows;
   const std::size_t columns =
@@ -74,7 +77,7 @@ Raster render(const Figure& figure) {
     const double x = margin + left + static_cast<double>(i % columns) * (cell_width + gap);
     panels[i].draw(canvas, static_cast<int>(std::lround(x)), plot_top[i / columns], header_width);
   }
-  return canvas.raster();
+  return canvas.finish();
 }
 
 }  // namespace sagitta::output

@@ -2,7 +2,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "lib/output/panel_internal.h"
@@ -166,32 +169,44 @@ void PanelLayout::draw(Canvas& canvas, int x, int y, double header_width) const 
 
 void PanelLayout::draw_map(Canvas& canvas, int x, int y) const {
   const Map& map = panel_.map;
-  // The map's pixels [first, last) that the plot's pixel i of `plot` covers, at least one.
-  const auto covered = [](int i, int plot, int count) {
-    const auto first = static_cast<int>(std::int64_t{i} * count / plot);
-    const auto last = static_cast<int>((std::int64_t{i} + 1) * count / plot);
-    return std::pair{first, std::max(last, first + 1)};
+  // The map's pixels [first, last) that each of `plot` pixels of the picture covers, at least one.
+  struct Covered {
+    std::size_t first, last;
+    bool operator==(const Covered&) const = default;
   };
-  std::vector<Rgb8> colors;
-  colors.reserve(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
-  float last = 0;  // neighbours often show one value
-  Rgb8 last_color = color_of(last);
-  for (int j = 0; j < height_; ++j) {
-    const auto [top, bottom] = covered(j, height_, map.height);
-    for (int i = 0; i < width_; ++i) {
-      const auto [left, right] = covered(i, width_, map.width);
-      float shown = std::numeric_limits<float>::quiet_NaN();
-      for (int row = top; row < bottom; ++row)
-        for (int column = left; column < right; ++column) {
-          const float value = map.values[static_cast<std::size_t>(row) * static_cast<std::size_t>(map.width) +
-                                         static_cast<std::size_t>(column)];
-          if (!(std::abs(value) <= std::abs(shown)) && !std::isnan(value)) shown = value;
-        }
-      if (shown != last) last_color = color_of(last = shown);  // and so for NaN
-      colors.push_back(last_color);
-    }
+  const auto covered = [](int plot, int map_size) {
+    std::vector<Covered> all;
+    const auto count = static_cast<std::size_t>(map_size), of = static_cast<std::size_t>(plot);
+    for (std::size_t i = 0; i < of; ++i) all.push_back({i * count / of, std::max((i + 1) * count / of, i * count / of + 1)});
+    return all;
+  };
+  const std::vector<Covered> columns = covered(width_, map.width), rows = covered(height_, map.height);
+  // Counts repeat, and so do neighbours: the last value of each of 256 classes and its colour.
+  struct Known {
+    std::uint32_t value, pixel;
+  };
+  std::array<Known, 256> known{};
+  for (Known& one : known) one = {0, pixel_of(color_of(0))};
+  const auto pixel_at = [&](float value) {
+    const auto bits = std::bit_cast<std::uint32_t>(value);
+    Known& one = known[bits * 0x9E3779B9U >> 24U];  // 2^32 over the golden ratio
+    if (one.value != bits) one = {bits, pixel_of(color_of(value))};
+    return one.pixel;
+  };
+  std::vector<std::uint32_t> pixels(columns.size());
+  for (std::size_t j = 0; j < rows.size(); ++j) {
+    if (j == 0 || rows[j] != rows[j - 1])
+      for (std::size_t i = 0; i < columns.size(); ++i) {
+        float shown = std::numeric_limits<float>::quiet_NaN();
+        for (std::size_t row = rows[j].first; row < rows[j].last; ++row)
+          for (std::size_t column = columns[i].first; column < columns[i].last; ++column) {
+            const float value = map.values[row * static_cast<std::size_t>(map.width) + column];
+            if (!(std::abs(value) <= std::abs(shown)) && !std::isnan(value)) shown = value;
+          }
+        pixels[i] = pixel_at(shown);
+      }
+    canvas.row(x, y + static_cast<int>(j), pixels);
   }
-  canvas.pixels(x, y, width_, colors);
 }
 
 void PanelLayout::draw_axes(Canvas& canvas, const Box& plot) const {
@@ -218,7 +233,8 @@ void PanelLayout::draw_axes(Canvas& canvas, const Box& plot) const {
 void PanelLayout::draw_bar(Canvas& canvas, const Box& plot) const {
   const Box bar{plot.x + plot.width + bar_gap, plot.y, bar_width, plot.height};
   for (int j = 0; j < height_; ++j)
-    canvas.fill({bar.x, bar.y + j, bar.width, 1}, color(panel_.color_map, 1 - (j + 0.5) / height_));
+    canvas.row(static_cast<int>(bar.x), static_cast<int>(bar.y) + j,
+               std::vector<std::uint32_t>(static_cast<std::size_t>(bar.width), pixel_of(color(panel_.color_map, 1 - (j + 0.5) / height_))));
   canvas.frame(bar, frame_ink);
   const double edge = bar.x + bar.width + 1;
   for (const Scale::Tick& tick : bar_scale_.ticks) {

@@ -78,8 +78,9 @@ std::string format(const Finding& finding) {
   const std::string severity = finding.severity == Severity::error     ? "error"
                                : finding.severity == Severity::warning ? "warning"
                                                                        : "note";
-  std::string text = place.file + ':' + std::to_string(std::max(place.line, 1)) + ':' +
-                     std::to_string(std::max(place.column, 1)) + ": " + severity + ": " + finding.what;
+  std::string text = place.file;
+  if (place.line >= 0) text += ':' + std::to_string(std::max(place.line, 1)) + ':' + std::to_string(std::max(place.column, 1));
+  text += ": " + severity + ": " + finding.what;
   if (!finding.hint.empty()) text += "\n  hint: " + finding.hint;
   return text;
 }

@@ -8,7 +8,8 @@
 
 namespace sagitta::prescription {
 
-// Lines and columns count from 1; line 0 means the file as a whole (printed as 1:1). Columns count bytes.
+// Lines and columns count from 1; line 0 means the file as a whole (printed as 1:1). Columns count bytes. Line -1: `file` is no
+// file but an option of the command line, and is printed alone.
 struct Place {
   std::string file;
   int line = 0;
@@ -40,7 +41,7 @@ class Findings {
   int error_count_ = 0;
 };
 
-// "file:line:column: error: what" and, where there is a hint, a second line "  hint: ...".
+// "file:line:column: error: what", or "--option: error: what", and, where there is a hint, a second line "  hint: ...".
 std::string format(const Finding& finding);
 
 // The candidate nearest to `given` by edit distance, or "" where none is near: for "did you mean ...".

@@ -111,6 +111,19 @@ TEST(ColorMap, EqualValuesOfEitherSignAreEquallyLightAndEquallyColourful) {
   EXPECT_LE(std::max({zero[0], zero[1], zero[2]}) - std::min({zero[0], zero[1], zero[2]}), 1);
 }
 
+TEST(ColorMap, TheTableIsOffByOneAtMost) {
+  int off = 0;
+  for (const ColorMap map : all_maps)
+    for (int i = 0; i <= 100000; ++i) {
+      const Rgb8 exact = exact_color(map, i / 1e5), shown = color(map, i / 1e5);
+      for (std::size_t c = 0; c < 3; ++c) {
+        EXPECT_LE(std::abs(exact[c] - shown[c]), 1) << i;
+        off += exact[c] != shown[c];
+      }
+    }
+  EXPECT_LT(off, 600000 / 5);
+}
+
 TEST(ColorMap, BeyondTheEndsTheEndsAreShownAndNoDataIsNeutralGrey) {
   for (const ColorMap map : all_maps) {
     EXPECT_EQ(color(map, -1), color(map, 0));

@@ -11,6 +11,7 @@
 #include <ImfIntAttribute.h>
 #include <ImfLineOrder.h>
 #include <ImfMultiPartInputFile.h>
+#include <ImfMultiPartOutputFile.h>
 #include <ImfPartType.h>
 #include <ImfStringAttribute.h>
 #include <ImfStringVectorAttribute.h>
@@ -21,6 +22,7 @@
 
 #include <bit>
 #include <cstdio>
+#include <cstring>
 #include <limits>
 #include <random>
 
@@ -139,6 +141,76 @@ TEST(Exr, TheSamePartsGiveTheSameBytesAndAHundredAndTwentyPartsAreNoTrouble) {
   EXPECT_EQ(Imf::MultiPartInputFile((folder / "a.exr").c_str()).parts(), 120);
 }
 
+TEST(Exr, AnyNumberOfThreadsGivesTheSameBytes) {
+  const TestFolder folder;
+  std::vector<ExrPart> parts;
+  for (unsigned i = 0; i < 9; ++i) parts.push_back(random_part(fmt::format("part {}", i), 50, 90, i));
+  for (const int thread_count : {1, 2, 7, 0}) ASSERT_EQ(write_exr(folder / fmt::format("{}.exr", thread_count), parts, thread_count).error, "");
+  for (const char* name : {"2.exr", "7.exr", "0.exr"}) EXPECT_EQ(folder.contents(name), folder.contents("1.exr"));
+}
+
+TEST(Exr, APictureOfBytesIsTheSameFileAsItsFloats) {
+  const TestFolder folder;
+  std::mt19937 random(5);
+  ExrBytes bytes{{}, 3, {}};
+  for (float& value : bytes.values) value = std::bit_cast<float>(static_cast<std::uint32_t>(random()));
+  std::vector<std::uint8_t> picture(3 * 37 * 35 - 2);  // the last pixel's first byte is the last of all
+  for (std::uint8_t& byte : picture) byte = static_cast<std::uint8_t>(random() % 64 * (random() % 5));
+  bytes.bytes = picture;
+  std::vector<float> floats;
+  for (std::size_t i = 0; i < picture.size(); i += 3) floats.push_back(bytes.values[picture[i]]);
+  ASSERT_EQ(floats.size(), 37U * 35);
+  const ExrPart as_bytes{"p", 37, 35, {{"Y", bytes}, {"Z", floats}}, {}}, as_floats{"p", 37, 35, {{"Y", floats}, {"Z", bytes}}, {}};
+  ASSERT_EQ(write_exr(folder / "a.exr", {&as_bytes, 1}).error, "");
+  ASSERT_EQ(write_exr(folder / "b.exr", {&as_floats, 1}).error, "");
+  EXPECT_EQ(folder.contents("a.exr"), folder.contents("b.exr"));
+  Imf::MultiPartInputFile file((folder / "a.exr").c_str());
+  EXPECT_EQ(bits(read_channel<float>(file, 0, "Y")), bits(floats));
+}
+
+TEST(Exr, TheHeadersAreThoseOfTheOpenExrLibraryByteForByte) {
+  const TestFolder folder;
+  std::vector<ExrPart> parts{random_part("preview", 33, 17, 1), random_part("b", 64, 40, 2)};
+  parts[1].attributes = {{"text", std::string("−")},
+                         {"count", -3},
+                         {"short", 0.1F},
+                         {"long", 0.1},
+                         {"Pixel_size_mm", std::array<float, 2>{1, 2}},
+                         {"place_mm", std::array<float, 3>{1, 2, 3}},
+                         {"names", std::vector<std::string>{"ok", "", "missed"}}};
+  for (const bool has_long_name : {false, true}) {
+    if (has_long_name) parts[1].attributes.push_back({"a_name_of_more_than_thirty_one_characters", 1});
+    std::vector<Imf::Header> headers;
+    for (const ExrPart& part : parts) {
+      headers.emplace_back(part.width, part.height);
+      headers.back().setName(part.name);
+      headers.back().setType(Imf::SCANLINEIMAGE);
+      headers.back().compression() = Imf::ZIP_COMPRESSION;
+      headers.back().channels().insert("wavefront.mask", Imf::Channel(Imf::UINT));
+      headers.back().channels().insert("Y", Imf::Channel(Imf::FLOAT));
+    }
+    headers[0].insert("unit", Imf::StringAttribute("waves"));
+    headers[1].insert("text", Imf::StringAttribute("−"));
+    headers[1].insert("count", Imf::IntAttribute(-3));
+    headers[1].insert("short", Imf::FloatAttribute(0.1F));
+    headers[1].insert("long", Imf::DoubleAttribute(0.1));
+    headers[1].insert("Pixel_size_mm", Imf::V2fAttribute({1, 2}));
+    headers[1].insert("place_mm", Imf::V3fAttribute({1, 2, 3}));
+    headers[1].insert("names", Imf::StringVectorAttribute(Imf::StringVector{"ok", "", "missed"}));
+    if (has_long_name) headers[1].insert("a_name_of_more_than_thirty_one_characters", Imf::IntAttribute(1));
+    { const Imf::MultiPartOutputFile file((folder / "theirs.exr").c_str(), headers.data(), 2, true, 0); }
+    ASSERT_EQ(write_exr(folder / "ours.exr", parts).error, "");
+    const std::string ours = folder.contents("ours.exr"), theirs = folder.contents("theirs.exr");
+    // The library has written no pixels: behind its headers there is a table of 2 + 3 chunks, and nothing else.
+    const std::size_t header_size = theirs.size() - std::size_t{8} * (2 + 3);
+    ASSERT_GT(ours.size(), theirs.size());
+    EXPECT_EQ(ours.substr(0, header_size), theirs.substr(0, header_size));
+    std::uint64_t first_chunk = 0;
+    std::memcpy(&first_chunk, ours.data() + header_size, sizeof first_chunk);
+    EXPECT_EQ(first_chunk, theirs.size());
+  }
+}
+
 TEST(Exr, WhatCannotBeWrittenIsNamedAndNothingIsLeft) {
   const TestFolder folder;
   const std::string path = folder / "x.exr";
@@ -154,6 +226,9 @@ TEST(Exr, WhatCannotBeWrittenIsNamedAndNothingIsLeft) {
   EXPECT_EQ(error({{"a", 1, 1, {{"", pixel.pixels}}, {}}}), path + ": part 'a': a channel without a name");
   EXPECT_THAT(error({{"a", 1, 1, {pixel}, {{"unit", 1}, {"unit", 2}}}}), HasSubstr("attribute 'unit' is given twice"));
   EXPECT_THAT(error({{"a", 1, 1, {pixel}, {{"compression", 1}}}}), HasSubstr("attribute 'compression'"));
+  EXPECT_EQ(error({{"a", 1, 1, {{std::string(256, 'Y'), pixel.pixels}}, {}}}), path + ": part 'a': a channel's name is too long");
+  for (const std::string& name : {std::string(), std::string(256, 'u')})
+    EXPECT_EQ(error({{"a", 1, 1, {pixel}, {{name, 1}}}}), path + ": part 'a': an attribute without a name, or with one that is too long");
   EXPECT_TRUE(folder.names().empty());
 }
 
@@ -174,7 +249,7 @@ TEST_P(ExrReaders, ShowEveryPartAndAttributeAndWarnOfNothing) {
   const std::string program = command.substr(0, command.find(' '));
   if (run("command -v " + program).second != 0) GTEST_SKIP() << program << " is not installed";
   const TestFolder folder;
-  const Raster raster{40, 30, std::vector<std::uint8_t>(3600, 128)};
+  const Raster raster{40, 30, std::vector<std::uint32_t>(1200, 0x808080)};
   std::vector<ExrPart> parts{preview_part(raster), random_part("wavefront.field1.543nm", 64, 64, 7)};
   parts[1].attributes.push_back({"wavelength_nm", 543.25});
   parts[1].attributes.push_back({"pixel_size_mm", std::array<float, 2>{0.25F, 0.5F}});

@@ -18,9 +18,8 @@ constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 constexpr Rgb8 white{255, 255, 255};
 
 Rgb8 at(const Raster& raster, int x, int y) {
-  const std::size_t i =
-      3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(raster.width) + static_cast<std::size_t>(x));
-  return {raster.rgb[i], raster.rgb[i + 1], raster.rgb[i + 2]};
+  const std::uint32_t pixel = raster.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(raster.width) + static_cast<std::size_t>(x)];
+  return {static_cast<std::uint8_t>(pixel >> 16U), static_cast<std::uint8_t>(pixel >> 8U), static_cast<std::uint8_t>(pixel)};
 }
 
 struct Found {
@@ -102,7 +101,58 @@ TEST(Figure, TheSameFigureGivesTheSameBytesAndThePngHoldsItsPixels) {
   image.format = PNG_FORMAT_RGB;
   std::vector<std::uint8_t> pixels(PNG_IMAGE_SIZE(image));
   ASSERT_NE(png_image_finish_read(&image, nullptr, pixels.data(), 0, nullptr), 0);
-  EXPECT_EQ(pixels, raster.rgb);
+  std::vector<std::uint8_t> expected;
+  for (int y = 0; y < raster.height; ++y)
+    for (int x = 0; x < raster.width; ++x)
+      for (const std::uint8_t component : at(raster, x, y)) expected.push_back(component);
+  EXPECT_EQ(pixels, expected);
+}
+
+// Where the first panel shows the second one's labels these are copied from there, and else they are drawn.
+TEST(Figure, ALabelThatIsCopiedIsTheOneThatIsDrawn) {
+  Panel panel = flat_panel(0.5), unlike = flat_panel(0.5);
+  panel.axes = {25, 25, 0, 0, true, "pupil x", "pupil y"};
+  panel.range = Range{0, 100};
+  unlike.axes = {0.25, 0.25, 0, 0, false, "u", "v"};
+  unlike.range = Range{0, 8};
+  unlike.title = "Other";
+  unlike.subtitle = {"words"};
+  unlike.quantity = "Q";
+  unlike.unit = "u";
+  const Raster copied = render({"", "", {panel, panel}, 2}), drawn = render({"", "", {unlike, panel}, 2});
+  ASSERT_EQ(copied.width, drawn.width);
+  ASSERT_EQ(copied.height, drawn.height);
+  int inked = 0, unlike_on_the_left = 0;
+  for (int y = 0; y < drawn.height; ++y)
+    for (int x = 0; x < drawn.width; ++x) {
+      if (x < drawn.width / 2) {
+        unlike_on_the_left += at(copied, x, y) != at(drawn, x, y);
+        continue;
+      }
+      inked += at(drawn, x, y) != white;
+      ASSERT_EQ(at(copied, x, y), at(drawn, x, y)) << x << " " << y;
+    }
+  EXPECT_GT(inked, 384 * 384);
+  EXPECT_GT(unlike_on_the_left, 1000);
+}
+
+// Of a plot 24 pixels wide the labels -5000 and 0 overlap; where the first panel has a 0 that stands alone, that is not copied.
+TEST(Figure, ALabelOverAnotherIsNotCopied) {
+  Panel narrow = flat_panel(0.5), wide = flat_panel(0.5);
+  narrow.map = {2, 32, std::vector<float>(64, 0.5F)};
+  narrow.axes = {5000, 5000, -2500, 0, false, "", ""};
+  wide.axes = {1250, 1250, -2500, 0, false, "", ""};
+  const Raster with_zero = render({"", "", {wide, narrow}, 2});
+  wide.axes.center_x = 50000;
+  const Raster without_zero = render({"", "", {wide, narrow}, 2});
+  ASSERT_EQ(with_zero.width, without_zero.width);
+  int inked = 0;
+  for (int y = 0; y < with_zero.height; ++y)
+    for (int x = with_zero.width / 2; x < with_zero.width; ++x) {
+      ASSERT_EQ(at(with_zero, x, y), at(without_zero, x, y)) << x << " " << y;
+      inked += at(with_zero, x, y) != white;
+    }
+  EXPECT_GT(inked, 24 * 384);
 }
 
 TEST(Figure, AnEmptyPictureIsAnErrorAndNoFile) {
@@ -240,22 +290,23 @@ TEST(Figure, NumbersThatAreNoneStillMakeAPicture) {
 }
 
 TEST(Preview, ItHoldsThePictureInLinearLightWithoutNaN) {
-  const Raster raster{2, 1, {0, 128, 255, 64, 1, 200}};
+  const Raster raster{2, 1, {0x0080FF, 0x4001C8}};
   const ExrPart part = preview_part(raster);
   EXPECT_EQ(part.name, "preview");
   ASSERT_EQ(part.channels.size(), 3U);
   for (std::size_t c = 0; c < 3; ++c) {
-    EXPECT_EQ(part.channels[c].name, std::string(1, "RGB"[c]));
-    const auto& values = std::get<std::vector<float>>(part.channels[c].pixels);
-    ASSERT_EQ(values.size(), 2U);
+    EXPECT_EQ(part.channels[c].name, std::string(1, "BGR"[c]));
+    const auto& pixels = std::get<ExrBytes>(part.channels[c].pixels);
+    ASSERT_EQ(pixels.size(), 2U);
     for (std::size_t i = 0; i < 2; ++i) {
+      const float value = pixels.values[pixels.bytes[pixels.step * i]];
       // Back to the bytes; 128 is 0.21586 in linear light.
-      EXPECT_EQ(std::lround(255 * srgb_from_linear(double(values[i]))), raster.rgb[3 * i + c]);
-      EXPECT_GE(values[i], 0);
-      EXPECT_LE(values[i], 1);
+      EXPECT_EQ(std::lround(255 * srgb_from_linear(double(value))), at(raster, static_cast<int>(i), 0)[2 - c]);
+      EXPECT_GE(value, 0);
+      EXPECT_LE(value, 1);
     }
   }
-  EXPECT_NEAR(std::get<std::vector<float>>(part.channels[1].pixels)[0], 0.2158605, 1e-7);
+  EXPECT_NEAR(std::get<ExrBytes>(part.channels[1].pixels).values[128], 0.2158605, 1e-7);
 }
 
 }  // namespace

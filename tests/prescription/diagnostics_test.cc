@@ -12,6 +12,7 @@ TEST(Diagnostics, AFindingIsOneLineAndItsHintAnother) {
   EXPECT_EQ(format({{"a.yaml", 3, 7}, Severity::error, "bad", ""}), "a.yaml:3:7: error: bad");
   EXPECT_EQ(format({{"a.yaml", 3, 7}, Severity::warning, "odd", "do so"}), "a.yaml:3:7: warning: odd\n  hint: do so");
   EXPECT_EQ(format({{"a.yaml"}, Severity::note, "named here", ""}), "a.yaml:1:1: note: named here");
+  EXPECT_EQ(format({{"--with", -1}, Severity::note, "named here", ""}), "--with: note: named here");
 }
 
 TEST(Diagnostics, OnlyErrorsAreErrors) {
