@@ -94,13 +94,12 @@ void SpotCollector::add_block(const trace::RayBatch& rays, std::size_t from, std
 
   numerics::with_chosen_instructions_flat([&]<int n>() {
     using Vector = Lanes<n>;
-    // From the image's centre, each ray where its column of the sums is, with 0 before and behind them.
-    constexpr std::size_t room = block_size + 2 * columns;
-    double dx[room], dy[room], squares[room];
-    const std::size_t first = column_, end = first + count, whole = (end + columns - 1) / columns * columns;
+    // From the image's centre, and zeros behind them: they add nothing to the sums.
+    const std::size_t whole = (count + columns - 1) / columns * columns;
     const double centre_x = image_.centre_x, centre_y = image_.centre_y;
-    for (std::size_t i = 0; i < columns; ++i) dx[i] = dy[i] = dx[whole - 1 - i] = dy[whole - 1 - i] = 0;
-    for (std::size_t i = 0; i < count; ++i) dx[first + i] = x[i] - centre_x, dy[first + i] = y[i] - centre_y;
+    double dx[block_size], dy[block_size], squares[block_size];
+    for (std::size_t i = whole - columns; i < whole; ++i) dx[i] = dy[i] = 0;
+    for (std::size_t i = 0; i < count; ++i) dx[i] = x[i] - centre_x, dy[i] = y[i] - centre_y;
     for (std::size_t i = 0; i < whole; i += n) {
       const Vector right = Vector::load(dx + i), up = Vector::load(dy + i);
       (right * right + up * up).store(squares + i);
@@ -108,10 +107,9 @@ void SpotCollector::add_block(const trace::RayBatch& rays, std::size_t from, std
     x_.add<n>(dx, whole);
     y_.add<n>(dy, whole);
     squares_.add<n>(squares, whole);
-    column_ = end % columns;
-    for (std::size_t i = end; i < end + columns; ++i) dx[i] = dx[end - 1], dy[i] = dy[end - 1];
-    image_.add_from_centre<n>(dx + first, dy + first, count);
-    hull_.add<n>(dx + first, dy + first, count);
+    for (std::size_t i = count; i < whole; ++i) dx[i] = dx[count - 1], dy[i] = dy[count - 1];
+    image_.add_from_centre<n>(dx, dy, count);
+    hull_.add<n>(dx, dy, count);
   });
 }
 

@@ -58,7 +58,6 @@ class SpotCollector {
   void add_block(const trace::RayBatch& rays, std::size_t from, std::size_t count);
 
   trace::StatusCounts rays_;
-  std::size_t column_ = 0;               // of the sums, where the next ray's terms go
   numerics::ColumnSum x_, y_, squares_;  // about the image's centre
   numerics::ConvexHull hull_;
   SpotImage image_;

@@ -78,14 +78,18 @@ TEST(ZernikeFit, residual_is_what_the_terms_leave) {
   for (const double product : products) EXPECT_NEAR(product, 0, 1e-11);
 }
 
-// At the same places, at others, at fewer (which begin as the others do), and back.
+// At the same places, at others, at fewer (which begin as the others do), at places with the same x, with the same y, and back.
 TEST(ZernikeFit, has_the_same_bits_whatever_the_fitter_did_before) {
   const auto wave = [](double x, double y) { return std::sin(3 * x) + x * y; };
   const auto other_wave = [](double x, double y) { return std::exp(x - y); };
   std::vector<Sample> fewer = grid(15, 0, wave);
   fewer.resize(fewer.size() - 40);
+  std::vector<Sample> higher = grid(15, 0, wave), further = higher;
+  for (Sample& sample : higher) sample.y *= 0.9;
+  for (Sample& sample : further) sample.x *= 0.9;
   ZernikeFitter fitter(ZernikeIndexing::osa, 21);
-  for (const auto& samples : {grid(15, 0, wave), grid(15, 0, other_wave), fewer, grid(15, 0.5, wave), std::vector<Sample>{}, grid(15, 0, wave), grid(14, 0, wave)}) {
+  for (const auto& samples : {grid(15, 0, wave), grid(15, 0, other_wave), fewer, grid(15, 0.5, wave), std::vector<Sample>{}, grid(15, 0, wave), higher,
+                              grid(15, 0, wave), further, grid(14, 0, wave)}) {
     const auto again = fitter.fit(samples), fresh = fit_zernike(samples, ZernikeIndexing::osa, 21);
     ASSERT_EQ(again.has_value(), fresh.has_value());
     if (!fresh) continue;
