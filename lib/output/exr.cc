@@ -171,7 +171,8 @@ struct AttributeSetter {
   exr_result_t operator()(const std::vector<std::string>& values) const {
     std::vector<const char*> texts;
     for (const std::string& value : values) texts.push_back(value.c_str());
-    return exr_attr_set_string_vector(context, part, name, static_cast<std::int32_t>(texts.size()), texts.data());
+    texts.push_back(nullptr);  // not one of them: for none, too, the library wants a place
+    return exr_attr_set_string_vector(context, part, name, static_cast<std::int32_t>(values.size()), texts.data());
   }
 };
 
