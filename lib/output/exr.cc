@@ -21,7 +21,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "pixels go into the file as they lie in memory");
 
 constexpr int rows_of_chunk = 16;  // of ZIP compression
-constexpr int packing_level = 4;  // of libdeflate: next to the fastest, and 7 % fewer bytes
+constexpr int packing_level = 4;   // of libdeflate: hardly slower than its fastest, 2, and of 8 % fewer bytes
 constexpr std::size_t longest_short_name = 31, longest_name = 255;
 
 std::size_t pixel_count(const ExrPart& part) { return static_cast<std::size_t>(part.width) * static_cast<std::size_t>(part.height); }

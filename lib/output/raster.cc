@@ -16,10 +16,10 @@ WriteResult write_png(const std::string& path, const Raster& raster) {
   if (raster.width < 1 || raster.height < 1 ||
       raster.pixels.size() != static_cast<std::size_t>(raster.width) * static_cast<std::size_t>(raster.height))
     return {path + ": the picture is empty"};
-  std::vector<std::uint8_t> components;
-  components.reserve(3 * raster.pixels.size());
+  std::vector<std::uint8_t> components(3 * raster.pixels.size());
+  std::uint8_t* to = components.data();
   for (const std::uint32_t pixel : raster.pixels)
-    for (const unsigned shift : {16U, 8U, 0U}) components.push_back(static_cast<std::uint8_t>(pixel >> shift));
+    for (const unsigned shift : {16U, 8U, 0U}) *to++ = static_cast<std::uint8_t>(pixel >> shift);
 
   // "Fast" rows are not filtered. In a drawing pixels are like their neighbours or quite unlike; differences would only hide what repeats.
   png_image image{};
