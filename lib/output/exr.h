@@ -12,8 +12,8 @@
 // name in a part, or attributes of the format itself ("compression"); names of more than 255 characters; a channel whose size
 // is not width x height.
 //
-// The format is plain, and written here without OpenEXR's library: that compresses by zlib, which took most of the time of
-// a whole trace's pictures.
+// Written by OpenEXR's library in C. Its chunks are packed here, by libdeflate: the library's own zlib would take most of the
+// time of a whole trace's pictures.
 //
 // Source: Technical Introduction to OpenEXR and OpenEXR File Layout, openexr.com, version 3.1.
 #pragma once

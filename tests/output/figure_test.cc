@@ -155,9 +155,11 @@ TEST(Figure, ALabelOverAnotherIsNotCopied) {
   EXPECT_GT(inked, 24 * 384);
 }
 
-TEST(Figure, AnEmptyPictureIsAnErrorAndNoFile) {
+TEST(Figure, APictureThatIsEmptyOrTooWideIsAnErrorAndNoFile) {
   const TestFolder folder;
   EXPECT_EQ(write_png(folder / "a.png", {}).error, (folder / "a.png") + ": the picture is empty");
+  const Raster too_wide{1000001, 1, std::vector<std::uint32_t>(1000001)};  // for libpng, by a pixel
+  EXPECT_EQ(write_png(folder / "a.png", too_wide).error, (folder / "a.png") + ": Invalid IHDR data");  // libpng's words
   EXPECT_TRUE(folder.names().empty());
 }
 
