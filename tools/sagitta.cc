@@ -6,12 +6,15 @@
 #include <malloc.h>
 #endif
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <new>
 #include <system_error>
 
+#include "lib/numerics/instruction_set.h"
 #include "lib/numerics/key.h"
 #include "lib/numerics/zernike_basis.h"
 #include "lib/prescription/cloud_reader.h"
@@ -167,9 +170,19 @@ void keep_freed_memory() {
 
 }  // namespace
 
+// A misspelt limit would be none.
+bool knows_instruction_set(std::string_view name) {
+  const auto& names = sagitta::numerics::instruction_set_names;
+  return name.empty() || std::find(names.begin(), names.end(), name) != names.end();
+}
+
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is an error to report, not a reason to die
   keep_freed_memory();
+  if (const char* name = std::getenv("SAGITTA_ISA"); name && !knows_instruction_set(name)) {
+    fmt::print(stderr, "sagitta: SAGITTA_ISA is '{}'\n  hint: it may be {}\n", name, fmt::join(sagitta::numerics::instruction_set_names, ", "));
+    return 2;
+  }
   CLI::App app{"Sagitta: sequential ray tracing of eyes and lenses, from a text file to spots and wavefronts.", "sagitta"};
   app.set_version_flag("--version", about_this_build, "Print what this build is: version, compiler, libraries, licence");
   app.footer(usage_status);

@@ -56,24 +56,34 @@ struct SpotFrames {
   double half_width = 1e-6;
 };
 
-SpotFrames spot_frames(const scene::Scene& scene) {
-  const std::vector<trace::PupilPoint> pilot = pilot_points();
-  SpotFrames result{std::vector<SpotFrames::Centre>(scene.fields.size())};
-  auto& [frames, half_width] = result;
-  for (std::size_t field = 0; field < frames.size(); ++field) {
-    bool centred = false;
-    for (std::size_t w = 0; w < scene.wavelengths.size(); ++w) {
-      const trace::RayBatch rays = traced(scene, field, w, pilot, 1);
-      SpotCollector collector(SpotImage(2, 1, 0, 0));
-      collector.add(rays);
-      const Spot spot = collector.spot();
-      if (spot.rays[Status::ok] == 0) continue;
-      if (!centred) frames[field] = {spot.centroid_x, spot.centroid_y};
-      centred = true;
-      half_width = std::max(half_width, std::hypot(spot.centroid_x - frames[field].x, spot.centroid_y - frames[field].y) + spot.geometric_radius);
-    }
+// Whether the rays of any wavelength arrived.
+bool frame_spots(const scene::Scene& scene, std::size_t field, std::span<const trace::PupilPoint> pupil, SpotFrames& frames) {
+  SpotFrames::Centre& centre = frames.centres[field];
+  bool centred = false;
+  for (std::size_t w = 0; w < scene.wavelengths.size(); ++w) {
+    SpotCollector collector(SpotImage(2, 1, 0, 0));
+    collector.add(traced(scene, field, w, pupil, 1));
+    const Spot spot = collector.spot();
+    if (spot.rays[Status::ok] == 0) continue;
+    if (!centred) centre = {spot.centroid_x, spot.centroid_y};
+    centred = true;
+    frames.half_width = std::max(frames.half_width, std::hypot(spot.centroid_x - centre.x, spot.centroid_y - centre.y) + spot.geometric_radius);
   }
-  return result;
+  return centred;
+}
+
+// By the pilot rays; where none of a field arrives, by the first of the job's own rays that do, for sums about a place far from
+// the spot would lose its digits.
+SpotFrames spot_frames(const scene::Scene& scene, const JobRequest& request) {
+  const std::vector<trace::PupilPoint> pilot = pilot_points();
+  SpotFrames frames{std::vector<SpotFrames::Centre>(scene.fields.size())};
+  for (std::size_t field = 0; field < scene.fields.size(); ++field) {
+    if (frame_spots(scene, field, pilot, frames)) continue;
+    trace::PupilStream stream(request.pattern, request.ray_count);
+    for (std::vector<trace::PupilPoint> pupil; !(pupil = stream.next(batch_size)).empty();)
+      if (frame_spots(scene, field, pupil, frames)) break;
+  }
+  return frames;
 }
 
 bool is_made_of_data(const surface::Shape& shape) {
@@ -131,7 +141,7 @@ std::vector<std::vector<JobResult>> run_jobs(std::span<const scene::Scene> scene
     std::vector<SpotFrames> frames;
     double half_width = 0;
     for (const scene::Scene& scene : scenes) {
-      frames.push_back(spot_frames(scene));
+      frames.push_back(spot_frames(scene, request));
       half_width = std::max(half_width, frames.back().half_width);
     }
     const double first_pixel = 2 * round_up(half_width) / request.spot_image_size;

@@ -174,8 +174,8 @@ class LeftOut {
     optical_paths();
     shapes();
     surfaces();
-    if (const int count = compiled_.dispersive_media; count > 0)
-      add("dispersion of " + counted(count, "medium", "media"),
+    if (const int count = compiled_.dispersive_gaps; count > 0)
+      add("dispersion of the media in " + counted(count, "gap", "gaps"),
           "only " + counted(static_cast<int>(compiled_.scene->wavelengths.size()), "wavelength is traced", "wavelengths are traced"),
           "formulas and tables: what is kept are the indices there");
     for (const scene::CloudPart& part : compiled_.parts)
@@ -263,7 +263,7 @@ class LeftOut {
                   [&](const Passage& at) { return operations_of(at, way_of(at, has_opl)) - operations_of_passing_by(at); },
                   with("tracing ", "planes in one medium that stop no ray"));
     over_surfaces([](const Passage& at) { return !at.is_passed_by && at.is_shift; }, spared([](Way& way) { way.is_shift = false; }),
-                  with("turns into the frames of ", "they are centred: only a shift along z is left"));
+                  with("turns into the frames of ", "they are only shifted along z from the frames before"));
     over_surfaces([](const Passage& at) { return !at.is_passed_by && !at.surface->has_apertures(); },
                   spared([](Way& way) { way.kind.has_apertures = true; }), with("aperture tests of ", "they have no semi-diameter"));
     const auto refract = [](Way& way) { way.kind.deflection = Deflection::refract; };

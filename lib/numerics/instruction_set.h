@@ -1,22 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdlib>
 #include <string_view>
 
 namespace sagitta::numerics {
 
-// The instructions that kernels use: the best of the machine's, or at most $SAGITTA_ISA (x86-64, x86-64-v3, x86-64-v4). The
-// results have the same bits with each; chosen at the first call.
+// The instructions that kernels use: the best of the machine's, or at most $SAGITTA_ISA, one of the names below (another name is no
+// limit). The results have the same bits with each; chosen at the first call.
 enum class InstructionSet { any, x86_64_v3, x86_64_v4 };
+inline constexpr std::array<std::string_view, 3> instruction_set_names{"x86-64", "x86-64-v3", "x86-64-v4"};
 
 inline InstructionSet instruction_set() {
   static const InstructionSet chosen = [] {
 #if defined(__x86_64__)
     const char* wanted = std::getenv("SAGITTA_ISA");
-    const std::string_view most = wanted ? wanted : "x86-64-v4";
-    if (most == "x86-64-v4" && __builtin_cpu_supports("x86-64-v4")) return InstructionSet::x86_64_v4;
-    if (most != "x86-64" && __builtin_cpu_supports("x86-64-v3")) return InstructionSet::x86_64_v3;
+    const std::string_view most = wanted ? wanted : "";
+    if (most != instruction_set_names[0] && most != instruction_set_names[1] && __builtin_cpu_supports("x86-64-v4")) return InstructionSet::x86_64_v4;
+    if (most != instruction_set_names[0] && __builtin_cpu_supports("x86-64-v3")) return InstructionSet::x86_64_v3;
 #endif
     return InstructionSet::any;
   }();

@@ -45,7 +45,7 @@ surface::Shape compile_shape(const prescription::Shape& given, numerics::Arena& 
 }
 
 // How many gaps have a medium whose index depends on the wavelength.
-int count_dispersive_media(const Model& model) {
+int count_dispersive_gaps(const Model& model) {
   int count = !model.object.medium.dispersion->is_constant();
   for (const prescription::Surface& surface : model.surfaces)
     count += !surface.is_mirror() && &surface != &model.surfaces.back() && !surface.medium->dispersion->is_constant();
@@ -182,7 +182,7 @@ CompileResult compile_for(const Model& model, const Beam& beam) {
   if (findings.has_errors()) return result;
 
   place_surfaces(model, scene);
-  result.dispersive_media = count_dispersive_media(model);
+  result.dispersive_gaps = count_dispersive_gaps(model);
   scene.object.z = -model.object.distance_mm;
   scene.fields = compile_fields(model.fields);
   Clouds clouds(model.surfaces.size());

@@ -22,7 +22,7 @@ struct CompileResult {
   std::vector<CloudPart> parts;   // in the order of the surfaces
   std::map<int, surface::Shape> given;  // by the number of the surface: its shape as prescribed, where another one is the same
                                         // surface with fewer operations
-  int dispersive_media = 0;       // that rays travel in, of which the scene knows the indices at its wavelengths alone
+  int dispersive_gaps = 0;        // whose media disperse: the scene knows their indices at its wavelengths alone
   prescription::Findings findings;
 };
 

@@ -137,7 +137,7 @@ TEST(Plan, says_what_is_left_out_and_nothing_else) {
       {"kernel 'Zernike polynomial without terms' for surface 1", zernike("{0: 0, 9: 0}"), zernike("{0: 0, 9: 1}"), ""},
       {"Zernike terms of surface 1 from order 3 to 4", zernike("{4: 1, 9: 0, 14: 0}"), zernike("{4: 1, 9: 0, 14: 1}"), "additions"},
       {"Zernike terms of surface 1 from order 3 to 20", zernike("{4: 1, 230: 0}"), zernike("{4: 1, 230: 1}"), "recurrence"},
-      {"dispersion of 1 medium", "  - {stop: true, conic: {radius_mm: 10}, thickness_mm: 20, medium: N-BK7}\n  - {medium: N-BK7}\n", glass + "  - {medium: N-BK7}\n", "indices"}};
+      {"dispersion of the media in 1 gap", "  - {stop: true, conic: {radius_mm: 10}, thickness_mm: 20, medium: N-BK7}\n  - {medium: N-BK7}\n", glass + "  - {medium: N-BK7}\n", "indices"}};
   for (const Case& one : cases) {
     SCOPED_TRACE(one.begin);
     const Plan without = plan_of_text(one.without, request_for(true, false)), with = plan_of_text(one.with, request_for(true, false));

@@ -43,6 +43,11 @@ TEST(Version, names_the_instructions_that_are_forced) {
   GTEST_SKIP() << "only x86-64 has a choice of instructions";
 #endif
   EXPECT_THAT(run_program("--version", "SAGITTA_ISA=x86-64 ").out, HasSubstr("; here x86-64\n"));
+  EXPECT_EQ(run_program("--version", "SAGITTA_ISA= ").out, run_program("--version").out);
+  // 2026-11-22: taken for x86-64-v3
+  const Outcome misspelt = run_program("--version", "SAGITTA_ISA=x86-64-v2 ");
+  EXPECT_EQ(misspelt.status, 2);
+  EXPECT_EQ(misspelt.err, "sagitta: SAGITTA_ISA is 'x86-64-v2'\n  hint: it may be x86-64, x86-64-v3, x86-64-v4\n");
 }
 
 TEST(StartUp, loads_the_libraries_of_pictures_with_the_first_picture) {
