@@ -11,9 +11,9 @@ namespace sagitta::tools {
 namespace {
 
 std::string instruction_sets() {
-#if defined(__x86_64__)
-  constexpr const char* names[]{"x86-64", "x86-64-v3", "x86-64-v4"};  // as the enumeration has them
-  return fmt::format("{}; here {}", fmt::join(names, ", "), names[static_cast<int>(numerics::instruction_set())]);
+#if defined(SAGITTA_CHOOSES_INSTRUCTIONS)
+  const auto& names = numerics::instruction_set_names;
+  return fmt::format("{}; here {}", fmt::join(names, ", "), names[static_cast<std::size_t>(numerics::instruction_set())]);
 #else
   return "the compiler's";
 #endif

@@ -5,6 +5,12 @@
 #include <cstdlib>
 #include <string_view>
 
+// Under sanitizers there is but one set, and nothing is drawn in, which it does not need: the compiler takes half an hour over a
+// function into which thousands of checks are drawn.
+#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
+#define SAGITTA_CHOOSES_INSTRUCTIONS
+#endif
+
 namespace sagitta::numerics {
 
 // The instructions that kernels use: the best of the machine's, or at most $SAGITTA_ISA, one of the names below (another name is no
@@ -14,7 +20,7 @@ inline constexpr std::array<std::string_view, 3> instruction_set_names{"x86-64",
 
 inline InstructionSet instruction_set() {
   static const InstructionSet chosen = [] {
-#if defined(__x86_64__)
+#if defined(SAGITTA_CHOOSES_INSTRUCTIONS)
     const char* wanted = std::getenv("SAGITTA_ISA");
     const std::string_view most = wanted ? wanted : "";
     if (most != instruction_set_names[0] && most != instruction_set_names[1] && __builtin_cpu_supports("x86-64-v4")) return InstructionSet::x86_64_v4;
@@ -37,7 +43,7 @@ template <class Work>
 [[gnu::noinline, gnu::flatten]] void run_flat_for_any(const Work& work) {
   work.template operator()<2>();
 }
-#if defined(__x86_64__)
+#if defined(SAGITTA_CHOOSES_INSTRUCTIONS)
 template <class Work>
 [[gnu::noinline, gnu::target("arch=x86-64-v3")]] void run_for_v3(const Work& work) {
   work.template operator()<4>();
@@ -59,7 +65,7 @@ template <class Work>
 
 template <class Work>
 void with_chosen_instructions(const Work& work) {
-#if defined(__x86_64__)
+#if defined(SAGITTA_CHOOSES_INSTRUCTIONS)
   switch (instruction_set()) {
     case InstructionSet::x86_64_v4: return chosen_instructions::run_for_v4(work);
     case InstructionSet::x86_64_v3: return chosen_instructions::run_for_v3(work);
@@ -70,14 +76,14 @@ void with_chosen_instructions(const Work& work) {
 }
 template <class Work>
 void with_chosen_instructions_flat(const Work& work) {
-#if defined(__x86_64__)
+#if defined(SAGITTA_CHOOSES_INSTRUCTIONS)
   switch (instruction_set()) {
     case InstructionSet::x86_64_v4: return chosen_instructions::run_flat_for_v4(work);
     case InstructionSet::x86_64_v3: return chosen_instructions::run_flat_for_v3(work);
-    case InstructionSet::any: break;
+    case InstructionSet::any: return chosen_instructions::run_flat_for_any(work);
   }
 #endif
-  chosen_instructions::run_flat_for_any(work);
+  chosen_instructions::run_for_any(work);
 }
 
 }  // namespace sagitta::numerics

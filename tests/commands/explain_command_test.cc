@@ -24,7 +24,7 @@ TEST(ExplainCommand, prints_a_table_of_the_surfaces_and_what_is_left_out) {
   EXPECT_EQ(run.status, 0);
   EXPECT_EQ(run.err, "");
   for (const char* text : {"A lens\n", "kernel", "sphere", "conic", "plane", "left out", "why", "saves", "optical path lengths of the spots' rays",
-                           "dispersion of 1 medium", "only 2 wavelengths are traced", "kernel 'conic' for surface 1", "aperture tests of surfaces 2-3"})
+                           "dispersion of the media in 1 gap", "only 2 wavelengths are traced", "kernel 'conic' for surface 1", "aperture tests of surfaces 2-3"})
     EXPECT_THAT(run.out, HasSubstr(text));
   EXPECT_THAT(run.out, Not(HasSubstr("…")));  // no cell is cut
   EXPECT_THAT(run.out, Not(HasSubstr("asked for")));
