@@ -209,7 +209,7 @@ void Sheet::draw_axes(Canvas& canvas) const {
   for (std::size_t i = 0; i < x_.ticks.major.values.size(); ++i) {
     const double x = column(x_.ticks.major.values[i]);
     canvas.line(x, bottom, x, bottom + tick_length, 1, frame_ink);
-    canvas.text(x_.ticks.major.labels[i], x, bottom + tick_length + tick_gap + tick_size * line_height / 2, tick_size, Align::center, ink, 2 * margin);
+    canvas.text(x_.ticks.major.labels[i], x, bottom + tick_length + tick_gap + tick_size * line_height / 2, tick_size, Align::center, ink);
   }
   for (std::size_t i = 0; i < y_.ticks.major.values.size(); ++i) {
     const double y = row(y_.ticks.major.values[i]);
