@@ -16,7 +16,7 @@ namespace sagitta::output {
 namespace {
 
 constexpr std::size_t most_series = 36, most_characters = 600;
-constexpr double plot_width = 580, plot_height = 430;
+constexpr double plot_width = 580, least_plot_height = 430, most_plot_height = 640;
 constexpr int most_ticks = 12;
 constexpr double tick_length = 5, minor_tick_length = 3, tick_gap = 4;
 constexpr double legend_gap = 20, legend_text_width = 210, sample_width = 32, sample_gap = 8, entry_gap = 5;
@@ -172,8 +172,9 @@ void Sheet::lay_out() {
   for (const std::string& text : footer_texts())
     for (std::string& line : Canvas::wrap(text, tick_size, content)) footer_.push_back(std::move(line));
 
-  plot_ = {left, std::ceil(margin + title_size * line_height * static_cast<double>(title_.size()) + (title_.empty() ? 0 : 12)), plot_width, plot_height};
-  const double axes_end = plot_.y + plot_height + tick_length + tick_gap + (tick_size + label_size) * line_height;
+  plot_ = {left, std::ceil(margin + title_size * line_height * static_cast<double>(title_.size()) + (title_.empty() ? 0 : 12)), plot_width,
+           std::ceil(std::clamp(legend_height, least_plot_height, most_plot_height))};
+  const double axes_end = plot_.y + plot_.height + tick_length + tick_gap + (tick_size + label_size) * line_height;
   footer_top_ = std::max(axes_end, plot_.y + legend_height) + 12;
   const double bottom = footer_.empty() ? footer_top_ - 12 : footer_top_ + tick_size * line_height * static_cast<double>(footer_.size());
   width_ = static_cast<int>(std::ceil(content + 2 * margin));
