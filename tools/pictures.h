@@ -4,6 +4,7 @@
 // is made.
 #pragma once
 
+#include "lib/output/chart.h"
 #include "lib/output/exr.h"
 #include "lib/output/figure.h"
 #include "lib/output/raster.h"
@@ -15,6 +16,8 @@ struct Pictures {
   decltype(&output::preview_part) preview_part;
   decltype(&output::write_exr) write_exr;
   decltype(&output::write_png) write_png;
+  decltype(&output::render_chart) render_chart;
+  decltype(&output::chart_svg) chart_svg;
 };
 
 // Null where the module cannot be loaded; the first time with a message that names the command. A command that is going to make

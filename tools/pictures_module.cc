@@ -4,4 +4,5 @@
 
 namespace out = sagitta::output;
 
-extern "C" const sagitta::tools::Pictures sagitta_pictures{&out::render, &out::preview_part, &out::write_exr, &out::write_png};
+extern "C" const sagitta::tools::Pictures sagitta_pictures{&out::render, &out::preview_part, &out::write_exr, &out::write_png,
+                                                           &out::render_chart, &out::chart_svg};

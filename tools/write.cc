@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include "lib/numerics/parallel.h"
+#include "lib/output/atomic_file.h"
 #include "tools/pictures.h"
 
 namespace sagitta::tools {
@@ -43,6 +44,13 @@ bool write_image(const char* command, const std::filesystem::path& base, std::ve
       thread_count, [&] { exr = made->write_exr(base.string() + ".exr", parts, thread_count); }, [&] { png = made->write_png(base.string() + ".png", picture); });
   const bool exr_is_written = written(command, exr);
   return written(command, png) && exr_is_written;
+}
+
+bool write_chart(const char* command, const std::filesystem::path& base, const output::Chart& chart) {
+  const Pictures* made = pictures(command);
+  if (!made) return false;
+  const bool svg_is_written = written(command, output::write_file(base.string() + ".svg", made->chart_svg(chart)));
+  return written(command, made->write_png(base.string() + ".png", made->render_chart(chart))) && svg_is_written;
 }
 
 bool write_picture(const char* command, const std::filesystem::path& file, const output::Figure& figure) {

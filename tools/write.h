@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "lib/output/chart.h"
 #include "lib/output/exr.h"
 #include "lib/output/figure.h"
 
@@ -23,6 +24,9 @@ bool written(const char* command, const output::WriteResult& result);
 
 // BASE.exr, the figure as its preview before the parts, and BASE.png. thread_count 0: as many threads as the machine runs.
 bool write_image(const char* command, const std::filesystem::path& base, std::vector<output::ExrPart> parts, const output::Figure& figure, int thread_count);
+
+// BASE.svg and BASE.png, of the same drawing.
+bool write_chart(const char* command, const std::filesystem::path& base, const output::Chart& chart);
 
 // The figure alone, as a PNG.
 bool write_picture(const char* command, const std::filesystem::path& file, const output::Figure& figure);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cairo-ft.h>
+#include <cairo-svg.h>
 #include <cairo.h>
 
 #include <algorithm>
@@ -84,14 +85,40 @@ void set_color(cairo_t* context, Rgb8 color) {
   cairo_set_source_rgb(context, color[0] / 255.0, color[1] / 255.0, color[2] / 255.0);
 }
 
+cairo_status_t append(void* text, const unsigned char* bytes, unsigned count) {
+  static_cast<std::string*>(text)->append(reinterpret_cast<const char*>(bytes), count);
+  return CAIRO_STATUS_SUCCESS;
+}
+
+// As the text of an XML element.
+std::string escaped(std::string_view text) {
+  std::string result;
+  for (const std::string& one : characters(text))
+    result += one == "&" ? "&amp;" : one == "<" ? "&lt;" : one == ">" ? "&gt;" : one;
+  return result;
+}
+
 }  // namespace
 
+std::unique_lock<std::mutex> one_sheet_at_a_time() {
+  static std::mutex drawing;
+  return std::unique_lock(drawing);
+}
+
 struct Canvas::Cairo {
-  Cairo(int width, int height)
-      : raster{width, height, std::vector<std::uint32_t>(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), white)},
-        surface(cairo_image_surface_create_for_data(reinterpret_cast<unsigned char*>(raster.pixels.data()), CAIRO_FORMAT_RGB24, width, height, 4 * width)),
-        context(cairo_create(surface)) {
+  Cairo(int width, int height, Paper paper) {
+    if (paper == Paper::svg) {
+      surface = cairo_svg_surface_create_for_stream(append, &svg, width, height);
+      cairo_svg_surface_set_document_unit(surface, CAIRO_SVG_UNIT_PX);
+    } else {
+      raster = {width, height, std::vector<std::uint32_t>(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), white)};
+      surface = cairo_image_surface_create_for_data(reinterpret_cast<unsigned char*>(raster.pixels.data()), CAIRO_FORMAT_RGB24, width, height, 4 * width);
+    }
+    context = cairo_create(surface);
     cairo_set_antialias(context, CAIRO_ANTIALIAS_BEST);
+    if (paper == Paper::pixels) return;
+    set_color(context, background);
+    cairo_paint(context);
   }
   ~Cairo() {
     cairo_destroy(context);
@@ -100,17 +127,36 @@ struct Canvas::Cairo {
   Cairo(const Cairo&) = delete;
   Cairo& operator=(const Cairo&) = delete;
 
-  void dash(bool dashed) const {
+  void take_pen(double width, Rgb8 color, bool dashed, cairo_line_join_t join) const {
     const double lengths[] = {5, 3};
     cairo_set_dash(context, lengths, dashed ? 2 : 0, 0);
+    cairo_set_line_join(context, join);
+    cairo_set_line_width(context, width);
+    set_color(context, color);
   }
 
-  // Draws a line of text that begins at (x, y). On blank paper, where the same text has been drawn just so between the pixels, its
+  void stroke(double width, Rgb8 color, bool dashed = false, cairo_line_join_t join = CAIRO_LINE_JOIN_MITER) const {
+    take_pen(width, color, dashed, join);
+    cairo_stroke(context);
+  }
+
+  void fill_with_rim(Rgb8 color, double rim_width, Rgb8 rim) const {
+    set_color(context, color);
+    cairo_fill_preserve(context);
+    stroke(rim_width, rim);
+  }
+
+  // Draws a line of text that begins at (x, y). On blank paper of pixels, where the same text has been drawn just so between the pixels, its
   // pixels are copied: to fill outlines is most of the work of a sheet, and its axes are alike.
   void letters(const std::string& text, double x, double y, double size, Rgb8 color) {
     set_font(context, size);
     set_color(context, color);
     cairo_move_to(context, x, y);
+    if (raster.pixels.empty()) {  // each letter's outline stands in the file once
+      cairo_show_text(context, text.c_str());
+      cairo_new_path(context);
+      return;
+    }
     cairo_text_path(context, text.c_str());
     cairo_matrix_t matrix;
     cairo_get_matrix(context, &matrix);
@@ -137,9 +183,10 @@ struct Canvas::Cairo {
     cairo_surface_mark_dirty_rectangle(surface, left, top, right - left, bottom - top);
   }
 
-  Raster raster;  // what the surface draws on, a word a pixel as Cairo has it
-  cairo_surface_t* surface;
-  cairo_t* context;
+  Raster raster;    // what the surface draws on, a word a pixel as Cairo has it,
+  std::string svg;  // or what it writes to
+  cairo_surface_t* surface = nullptr;
+  cairo_t* context = nullptr;
 
  private:
   struct Label {
@@ -162,7 +209,7 @@ struct Canvas::Cairo {
   std::map<Label, std::vector<std::uint32_t>> drawn_;
 };
 
-Canvas::Canvas(int width, int height) : cairo_(std::make_unique<Cairo>(width, height)) {}
+Canvas::Canvas(int width, int height, Paper paper) : cairo_(std::make_unique<Cairo>(width, height, paper)) {}
 Canvas::~Canvas() = default;
 
 double Canvas::text_width(std::string_view text, double size) {
@@ -227,13 +274,25 @@ void Canvas::text_with_halo(std::string_view text, double x, double y, double si
   set_font(context, size);
   cairo_move_to(context, x, y + half_height * size);
   cairo_text_path(context, std::string(text).c_str());
-  cairo_->dash(false);
-  cairo_set_line_width(context, 3);
-  cairo_set_line_join(context, CAIRO_LINE_JOIN_ROUND);
-  set_color(context, {255, 255, 255});
+  cairo_->take_pen(3, background, false, CAIRO_LINE_JOIN_ROUND);
   cairo_stroke_preserve(context);
   set_color(context, color);
   cairo_fill(context);
+}
+
+double Canvas::text_lines(const std::vector<std::string>& lines, double x, double top, double size, Align align, Rgb8 color) {
+  for (const std::string& line : lines) {
+    text(line, x, top + size * line_height / 2, size, align, color);
+    top += size * line_height;
+  }
+  return top;
+}
+
+void Canvas::no_data(const Box& box, std::string_view note) {
+  fill(box, no_data_color);
+  const std::vector<std::string> lines = wrap(note, label_size, box.width - 24);
+  const double height = label_size * line_height * static_cast<double>(lines.size());
+  text_lines(lines, box.x + box.width / 2, box.y + (box.height - height) / 2, label_size, Align::center, soft_ink);
 }
 
 void Canvas::fill(const Box& box, Rgb8 color) {
@@ -243,20 +302,31 @@ void Canvas::fill(const Box& box, Rgb8 color) {
 }
 
 void Canvas::frame(const Box& box, Rgb8 color) {
-  set_color(cairo_->context, color);
-  cairo_->dash(false);
-  cairo_set_line_width(cairo_->context, 1);
   cairo_rectangle(cairo_->context, box.x - 0.5, box.y - 0.5, box.width + 1, box.height + 1);
-  cairo_stroke(cairo_->context);
+  cairo_->stroke(1, color);
 }
 
 void Canvas::line(double x1, double y1, double x2, double y2, double width, Rgb8 color, bool dashed) {
-  set_color(cairo_->context, color);
-  cairo_->dash(dashed);
-  cairo_set_line_width(cairo_->context, width);
-  cairo_move_to(cairo_->context, x1, y1);
-  cairo_line_to(cairo_->context, x2, y2);
-  cairo_stroke(cairo_->context);
+  const Point ends[] = {{x1, y1}, {x2, y2}};
+  polyline(ends, width, color, dashed);
+}
+
+void Canvas::polyline(std::span<const Point> points, double width, Rgb8 color, bool dashed) {
+  for (const Point& point : points) cairo_line_to(cairo_->context, point.x, point.y);  // the first is moved to
+  // A line without joins is said to have square ones, which Cairo draws faster.
+  cairo_->stroke(width, color, dashed, points.size() > 2 ? CAIRO_LINE_JOIN_ROUND : CAIRO_LINE_JOIN_MITER);
+}
+
+void Canvas::polygon(std::span<const Point> corners, Rgb8 color, double rim_width, Rgb8 rim) {
+  for (const Point& corner : corners) cairo_line_to(cairo_->context, corner.x, corner.y);
+  cairo_close_path(cairo_->context);
+  cairo_->fill_with_rim(color, rim_width, rim);
+}
+
+void Canvas::disc(Point center, double radius, Rgb8 color, double rim_width, Rgb8 rim) {
+  cairo_arc(cairo_->context, center.x, center.y, radius, 0, 6.283185307179586);
+  cairo_close_path(cairo_->context);
+  cairo_->fill_with_rim(color, rim_width, rim);
 }
 
 void Canvas::circle(double x, double y, double radius, double width, Rgb8 color, bool dashed, const Box& inside) {
@@ -266,10 +336,7 @@ void Canvas::circle(double x, double y, double radius, double width, Rgb8 color,
   cairo_clip(context);
   cairo_new_path(context);
   cairo_arc(context, x, y, radius, 0, 6.283185307179586);
-  set_color(context, color);
-  cairo_->dash(dashed);
-  cairo_set_line_width(context, width);
-  cairo_stroke(context);
+  cairo_->stroke(width, color, dashed);
   cairo_restore(context);
 }
 
@@ -284,6 +351,16 @@ Raster Canvas::finish() {
   if (cairo_surface_status(cairo_->surface) != CAIRO_STATUS_SUCCESS) return {};
   cairo_surface_finish(cairo_->surface);
   return std::move(cairo_->raster);
+}
+
+std::string Canvas::finish_svg(std::string_view title) {
+  cairo_surface_finish(cairo_->surface);
+  if (cairo_surface_status(cairo_->surface) != CAIRO_STATUS_SUCCESS) return {};
+  std::string svg = std::move(cairo_->svg);
+  // Cairo numbers its surfaces through the run: the same drawing would not be the same bytes.
+  static const std::string numbered = "<g id=\"surface";
+  if (const auto begin = svg.find(numbered); begin != std::string::npos) svg.erase(begin + 2, svg.find('>', begin) - begin - 2);
+  return svg.insert(svg.find('>', svg.find("<svg")) + 1, "\n<title>" + escaped(title) + "</title>");
 }
 
 }  // namespace sagitta::output

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 
 #include "lib/output/canvas_internal.h"
 #include "lib/output/panel_internal.h"
@@ -15,13 +14,12 @@ namespace sagitta::output {
 namespace {
 
 constexpr std::size_t most_panels = 64, most_rows = 16, most_characters = 600;
-constexpr double margin = 22, gap = 22;  // around the sheet and between panels
+constexpr double gap = 22;  // between panels
 
 }  // namespace
 
 Raster render(const Figure& figure) {
-  static std::mutex one_at_a_time;  // Cairo, FreeType and what is kept of letters are shared
-  const std::lock_guard lock(one_at_a_time);
+  const auto lock = one_sheet_at_a_time();
   const std::size_t panel_count = std::min(figure.panels.size(), most_panels);
   const std::size_t least_columns = (panel_count + most_rows - 1) / most_rows;
   const std::size_t columns =
@@ -66,13 +64,8 @@ Raster render(const Figure& figure) {
   const double bottom = footer.empty() ? y : footer_top + tick_size * line_height * static_cast<double>(footer.size());
 
   Canvas canvas(static_cast<int>(std::ceil(content + 2 * margin)), static_cast<int>(std::ceil(bottom + margin)));
-  const auto write = [&](const std::vector<std::string>& lines, double top, double size, Rgb8 line_color) {
-    for (std::size_t i = 0; i < lines.size(); ++i)
-      canvas.text(lines[i], margin, top + size * line_height * (static_cast<double>(i) + 0.5), size, Align::left,
-                  line_color);
-  };
-  write(title, margin, title_size, ink);
-  write(footer, footer_top, tick_size, soft_ink);
+  canvas.text_lines(title, margin, margin, title_size, Align::left, ink);
+  canvas.text_lines(footer, margin, footer_top, tick_size, Align::left, soft_ink);
   for (std::size_t i = 0; i < panel_count; ++i) {
     const double x = margin + left + static_cast<double>(i % columns) * (cell_width + gap);
     panels[i].draw(canvas, static_cast<int>(std::lround(x)), plot_top[i / columns], header_width);

@@ -140,15 +140,8 @@ Rgb8 PanelLayout::color_of(float value) const {
 }
 
 void PanelLayout::draw(Canvas& canvas, int x, int y, double header_width) const {
-  double top = y - header_height(header_width);
-  const auto header = [&](const std::vector<std::string>& lines, double size, Rgb8 line_color) {
-    for (const std::string& line : lines) {
-      canvas.text(line, x, top + size * line_height / 2, size, Align::left, line_color);
-      top += size * line_height;
-    }
-  };
-  header(title_lines(header_width), panel_title_size, ink);
-  header(subtitle_lines(header_width), tick_size, soft_ink);
+  const double title_end = canvas.text_lines(title_lines(header_width), x, y - header_height(header_width), panel_title_size, Align::left, ink);
+  canvas.text_lines(subtitle_lines(header_width), x, title_end, tick_size, Align::left, soft_ink);
 
   const Box plot{double(x), double(y), double(width_), double(height_)};
   if (has_data_) {
@@ -156,13 +149,7 @@ void PanelLayout::draw(Canvas& canvas, int x, int y, double header_width) const 
     draw_bar(canvas, plot);
     draw_circles(canvas, plot);
   } else {
-    canvas.fill(plot, no_data_color);
-    const auto lines = Canvas::wrap(printable(panel_.empty_note, most_characters), label_size, plot.width - 24);
-    double line_y = y + plot.height / 2 - label_size * line_height / 2 * (static_cast<double>(lines.size()) - 1);
-    for (const std::string& line : lines) {
-      canvas.text(line, x + plot.width / 2, line_y, label_size, Align::center, soft_ink);
-      line_y += label_size * line_height;
-    }
+    canvas.no_data(plot, printable(panel_.empty_note, most_characters));
   }
   draw_axes(canvas, plot);
 }

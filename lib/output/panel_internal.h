@@ -18,11 +18,6 @@
 
 namespace sagitta::output {
 
-// Text sizes and inks of the sheet, in pixels.
-inline constexpr double title_size = 19, panel_title_size = 13.5, label_size = 12, tick_size = 11;
-inline constexpr double line_height = 1.35;  // of any text, in units of its size
-inline constexpr Rgb8 ink{26, 26, 26}, soft_ink{92, 92, 92}, frame_ink{110, 110, 110}, background{255, 255, 255};
-
 // One axis, ready to draw: where its ticks stand as fractions of its length, and what is written there.
 struct Scale {
   struct Tick {

@@ -29,6 +29,15 @@ std::size_t code_point_length(std::string_view text) {
   return overlong || no_character ? 0 : length;
 }
 
+// U+FDD0 to U+FDEF, and those that end in FFFE and FFFF.
+bool is_noncharacter(std::string_view point) {
+  const auto bits = [&](std::size_t i) { return static_cast<unsigned char>(point[i]) & 0x3FU; };
+  if (point.size() < 3) return false;
+  const std::size_t last = point.size() - 1;
+  const unsigned low = (bits(last - 2) & 0xFU) << 12U | bits(last - 1) << 6U | bits(last);  // 16 bits of it
+  return (low & 0xFFFEU) == 0xFFFEU || (point.size() == 3 && low >= 0xFDD0U && low <= 0xFDEFU);
+}
+
 // C0, DEL and C1.
 bool is_control(std::string_view point) {
   const auto first = static_cast<unsigned char>(point[0]);
@@ -41,7 +50,7 @@ std::vector<std::string> characters(std::string_view text) {
   std::vector<std::string> result;
   while (!text.empty()) {
     const std::size_t length = code_point_length(text);
-    const std::string_view point = length == 0 ? replacement : text.substr(0, length);
+    const std::string_view point = length == 0 || is_noncharacter(text.substr(0, length)) ? replacement : text.substr(0, length);
     result.emplace_back(is_control(point) ? " " : point);
     text.remove_prefix(length == 0 ? 1 : length);
   }

@@ -10,7 +10,8 @@
 namespace sagitta::output {
 
 // The text as UTF-8 code points, one string each. Control characters (line ends and terminal escapes too) become
-// blanks; bytes that are not UTF-8 (RFC 3629: no overlong form, no surrogate, none above U+10FFFF) become U+FFFD.
+// blanks; bytes that are not UTF-8 (RFC 3629: no overlong form, no surrogate, none above U+10FFFF) become U+FFFD, and so do the
+// code points that Unicode keeps free of characters (U+FDD0 to U+FDEF, the last two of each plane), which Cairo and XML refuse.
 std::vector<std::string> characters(std::string_view text);
 
 // The same in one piece, "…" in place of what goes beyond `most` characters.

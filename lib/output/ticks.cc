@@ -24,10 +24,41 @@ std::string power_of_ten(int exponent) {
 }
 
 // m 10^e on a logarithmic axis.
-std::string log_label(int m, int e) {
-  if (e >= -3 && e < 5) return fixed(decimal(m, e), std::max(0, -e));
-  return (m == 1 ? "" : fmt::format("{}×", m)) + power_of_ten(e);
+struct LogTick {
+  int m, e;
+  double value() const { return decimal(m, e); }
+  bool is_plain() const { return e >= -3 && e < 5; }
+  std::string label(bool plain) const {
+    if (plain) return fixed(value(), std::max(0, -e));
+    return (m == 1 ? "" : fmt::format("{}×", m)) + power_of_ten(e);
+  }
+};
+
+// Those in [low, high] whose exponents the stride divides, ascending.
+std::vector<LogTick> log_ticks_of(double low, double high, const std::vector<int>& multiples, int stride) {
+  const double slack = 1e-9;
+  const int from = static_cast<int>(std::floor(std::log10(low)));
+  const int to = static_cast<int>(std::ceil(std::log10(high)));
+  std::vector<LogTick> ticks;
+  for (int e = from; e <= to; ++e)
+    for (const int m : multiples) {
+      const LogTick tick{m, e};
+      if (e % stride == 0 && tick.value() >= low * (1 - slack) && tick.value() <= high * (1 + slack)) ticks.push_back(tick);
+    }
+  return ticks;
 }
+
+// `label(tick)` is what is written at it.
+Ticks labelled(const std::vector<LogTick>& all, const auto& label) {
+  Ticks ticks;
+  for (const LogTick& tick : all) {
+    ticks.values.push_back(tick.value());
+    ticks.labels.push_back(label(tick));
+  }
+  return ticks;
+}
+
+bool is_log_axis(double low, double high) { return low > 0 && low < high && std::isfinite(high); }
 
 }  // namespace
 
@@ -54,25 +85,24 @@ Ticks linear_ticks(double low, double high, int most, double smallest_step) {
 }
 
 Ticks log_ticks(double low, double high, int most) {
-  if (!(low > 0) || !(low < high) || !std::isfinite(high)) return {};
-  const double slack = 1e-9;
-  const int from = static_cast<int>(std::floor(std::log10(low)));
-  const int to = static_cast<int>(std::ceil(std::log10(high)));
-  const auto collect = [&](std::initializer_list<int> multiples, int stride) {
-    Ticks ticks;
-    for (int e = from; e <= to; ++e)
-      for (const int m : multiples) {
-        const double value = decimal(m, e);
-        if (e % stride != 0 || value < low * (1 - slack) || value > high * (1 + slack)) continue;
-        ticks.values.push_back(value);
-        ticks.labels.push_back(log_label(m, e));
-      }
-    return ticks;
-  };
-  const auto fits = [&](const Ticks& ticks) { return static_cast<int>(ticks.values.size()) <= most; };
-  Ticks ticks = collect({1, 2, 5}, 1);
-  if (ticks.values.size() < 2) return linear_ticks(low, high, most);
-  for (int stride = 1; !fits(ticks); ++stride) ticks = collect({1}, stride);
+  if (!is_log_axis(low, high)) return {};
+  std::vector<LogTick> ticks = log_ticks_of(low, high, {1, 2, 5}, 1);
+  if (ticks.size() < 2) return linear_ticks(low, high, most);
+  for (int stride = 1; static_cast<int>(ticks.size()) > most; ++stride) ticks = log_ticks_of(low, high, {1}, stride);
+  return labelled(ticks, [](const LogTick& tick) { return tick.label(tick.is_plain()); });
+}
+
+ChartTicks chart_ticks(double low, double high, int most) {
+  if (!is_log_axis(low, high)) return {};
+  const bool is_short = std::log10(high / low) < 2.5;
+  int stride = 1;
+  std::vector<LogTick> major = log_ticks_of(low, high, is_short ? std::vector<int>{1, 2, 5} : std::vector<int>{1}, stride);
+  while (!is_short && static_cast<int>(major.size()) > most) major = log_ticks_of(low, high, {1}, ++stride);
+  const bool plain = std::all_of(major.begin(), major.end(), [](const LogTick& tick) { return tick.is_plain(); });
+  ChartTicks ticks{labelled(major, [&](const LogTick& tick) { return tick.label(plain); }), {}};
+  const auto minor = stride == 1 ? log_ticks_of(low, high, {2, 3, 4, 5, 6, 7, 8, 9}, 1) : log_ticks_of(low, high, {1}, 1);
+  for (const LogTick& tick : minor)
+    if (!std::binary_search(ticks.major.values.begin(), ticks.major.values.end(), tick.value())) ticks.minor.push_back(tick.value());
   return ticks;
 }
 

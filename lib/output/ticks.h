@@ -21,6 +21,16 @@ Ticks linear_ticks(double low, double high, int most, double smallest_step = 0);
 // below 0.001 and from 100 000 on are powers: "2×10⁵".
 Ticks log_ticks(double low, double high, int most);
 
+// Of a chart's logarithmic axis of a decade at least, 10 low <= high: where it is shorter than 2.5 decades, 1, 2, 5 times the
+// powers of ten, and the other multiples as minor ticks without a label; else the powers, their multiples being minor; where
+// the powers are more than `most` >= 2, every second, third ... of them, those between being minor. The labels are of one kind:
+// plain numbers where all of them are from 0.001 to below 100 000, and else powers, "10⁻⁹" or "2×10⁵".
+struct ChartTicks {
+  Ticks major;
+  std::vector<double> minor;
+};
+ChartTicks chart_ticks(double low, double high, int most);
+
 // mm, µm or nm, by the size of what is shown.
 struct LengthUnit {
   double per_mm = 1;

@@ -247,7 +247,7 @@ TEST(Figure, NothingReachesIntoTheMargins) {
     endless += "W";
     words += "long ";
   }
-  for (const std::string& text : {endless, words, std::string("\xff\x1b broken \n bytes")}) {
+  for (const std::string& text : {endless, words, std::string("\xff\x1b broken \n bytes \xEF\xBF\xBE")}) {
     Figure figure{text, text, {}, 2};
     for (int i = 0; i < 5; ++i) {
       Panel panel = flat_panel(i == 3 ? nan : 123456.789);

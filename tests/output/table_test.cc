@@ -58,6 +58,10 @@ TEST(Text, BytesThatAreNotUtf8AreReplacedOneByOne) {
   EXPECT_THAT(characters("\xf4\x90\x80\x80"), ElementsAre(bad, bad, bad, bad));  // above U+10FFFF
   EXPECT_THAT(characters("\xe2\x82"), ElementsAre(bad, bad));                    // cut off
   EXPECT_THAT(characters("\t\x7f\u0085"), ElementsAre(" ", " ", " "));
+  // Code points without a character, and their neighbours.
+  EXPECT_THAT(characters("\uFDCF\uFDD0\uFDEF\uFDF0"), ElementsAre("\uFDCF", bad, bad, "\uFDF0"));
+  EXPECT_THAT(characters("\uFFFC\uFFFE\uFFFF\U00010000"), ElementsAre("\uFFFC", bad, bad, "\U00010000"));
+  EXPECT_THAT(characters("\U0001FFFD\U0001FFFE\U0010FFFF\U0001FDD0"), ElementsAre("\U0001FFFD", bad, bad, "\U0001FDD0"));
 }
 
 TEST(Text, LongTextIsCut) {

@@ -72,6 +72,36 @@ TEST(Ticks, LogarithmicTicksArePowersOfTenThinnedOrRefined) {
   EXPECT_THAT(log_ticks(6, 9, 5).labels, ElementsAre("6", "7", "8", "9"));
 }
 
+TEST(Ticks, AShortChartAxisHasOneTwoAndFive) {
+  const ChartTicks decade = chart_ticks(2.5, 25, 12);
+  EXPECT_THAT(decade.major.labels, ElementsAre("5", "10", "20"));
+  EXPECT_THAT(decade.major.values, ElementsAre(5, 10, 20));
+  EXPECT_THAT(decade.minor, ElementsAre(3, 4, 6, 7, 8, 9));
+  EXPECT_THAT(chart_ticks(0.001, 0.1, 12).major.labels, ElementsAre("0.001", "0.002", "0.005", "0.01", "0.02", "0.05", "0.1"));
+  // One label that would not be plain makes all of them powers.
+  EXPECT_THAT(chart_ticks(0.0005, 0.01, 12).major.labels, ElementsAre("5×10⁻⁴", "10⁻³", "2×10⁻³", "5×10⁻³", "10⁻²"));
+  EXPECT_THAT(chart_ticks(40000, 500000, 12).major.labels, ElementsAre("5×10⁴", "10⁵", "2×10⁵", "5×10⁵"));
+  EXPECT_EQ(chart_ticks(1, 315, 12).major.labels.size(), 8U);  // 1 2 5 10 20 50 100 200
+}
+
+TEST(Ticks, ALongChartAxisHasPowersThinnedWhereTheyAreMany) {
+  const ChartTicks four = chart_ticks(8, 20000, 12);
+  EXPECT_THAT(four.major.labels, ElementsAre("10", "100", "1000", "10000"));
+  EXPECT_THAT(four.minor, ElementsAre(8, 9, 20, 30, 40, 50, 60, 70, 80, 90, 200, 300, 400, 500, 600, 700, 800, 900, 2000, 3000, 4000, 5000, 6000, 7000, 8000,
+                                      9000, 20000));
+  EXPECT_THAT(chart_ticks(1, 317, 12).major.labels, ElementsAre("1", "10", "100"));
+  EXPECT_THAT(chart_ticks(1e-9, 1e1, 12).major.labels,
+              ElementsAre("10⁻⁹", "10⁻⁸", "10⁻⁷", "10⁻⁶", "10⁻⁵", "10⁻⁴", "10⁻³", "10⁻²", "10⁻¹", "10⁰", "10¹"));
+  const ChartTicks thinned = chart_ticks(1e-9, 1e1, 10);
+  EXPECT_THAT(thinned.major.labels, ElementsAre("10⁻⁸", "10⁻⁶", "10⁻⁴", "10⁻²", "10⁰"));
+  EXPECT_THAT(thinned.minor, ElementsAre(1e-9, 1e-7, 1e-5, 1e-3, 1e-1, 1e1));
+  EXPECT_LE(chart_ticks(1e-300, 1e300, 12).major.values.size(), 12U);
+  for (const auto& [low, high] : {std::pair{0.0, 1.0}, std::pair{nan, 1.0}, std::pair{1.0, inf}, std::pair{2.0, 1.0}}) {
+    EXPECT_THAT(chart_ticks(low, high, 12).major.values, IsEmpty());
+    EXPECT_THAT(chart_ticks(low, high, 12).minor, IsEmpty());
+  }
+}
+
 TEST(Ticks, LengthsHaveTheUnitTheirSizeAsksFor) {
   EXPECT_STREQ(length_unit(12).name, "mm");
   EXPECT_STREQ(length_unit(0.1).name, "µm");
