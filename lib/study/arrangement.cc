@@ -25,7 +25,7 @@ Rings rings_of(const Arrangement& arrangement, double radius) {
 std::vector<Site> grid(double h, double radius, bool is_jittered, std::uint64_t seed) {
   const double shift_x = (std::numbers::sqrt2 - 1) * h, shift_y = (std::numbers::sqrt3 - 1) * h;
   const auto reach = static_cast<std::int64_t>(radius / h) + 2;
-  Uniform u(seed);
+  Uniform u(seed, Stream::sites);
   std::vector<Site> sites;
   for (std::int64_t j = -reach; j <= reach; ++j)
     for (std::int64_t i = -reach; i <= reach; ++i) {
@@ -40,7 +40,7 @@ std::vector<Site> grid(double h, double radius, bool is_jittered, std::uint64_t 
 }
 
 std::vector<Site> random(std::int64_t count, double radius, std::uint64_t seed) {
-  Uniform u(seed);
+  Uniform u(seed, Stream::sites);
   std::vector<Site> sites;
   while (static_cast<std::int64_t>(sites.size()) < count) {
     const double x = u(-1, 1), y = u(-1, 1);

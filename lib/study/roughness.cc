@@ -11,7 +11,7 @@ namespace sagitta::study {
 
 Roughness::Roughness(double rms, double correlation_length, std::uint64_t seed, int wave_count) : amplitude_(rms * std::sqrt(2.0 / wave_count)) {
   constexpr double turn = 2 * std::numbers::pi, golden = std::numbers::phi - 1;
-  Uniform u(seed);
+  Uniform u(seed, Stream::roughness);
   const double first_angle = u();
   for (int j = 0; j < wave_count; ++j) {
     const double modulus = 2 / correlation_length * std::sqrt(-std::log((j + 1 - u()) / wave_count));  // (3)

@@ -11,11 +11,18 @@
 // 1000 um over any aperture. The moduli are drawn one from each M-th of their distribution,
 //   |k_j| = (2/l) sqrt(-ln((j + u_j)/M)),   u_j in (0, 1],                                                            (3)
 // and the angles go on by the golden section, 2 pi (j (sqrt 5 - 1)/2 + v): each k_j has the distribution asked for, but
-// together they fill it evenly, and one surface of 256 waves keeps (1) as 4000 waves drawn without that do.
+// together they fill it evenly. What one surface keeps of (1) over a large area, rms over 40 surfaces, 7 lags from l/4 to 2 l and 8
+// directions, and of its mean square slope along x, 2 s^2/l^2:
+//
+//   M                          64      128     256     512     1000
+//   correlation, of s^2        .0095   .0050   .0027   .0014   .0008    (k drawn independently: .55/sqrt(M), .034 at 256)
+//   mean square slope          .056    .030    .017    .009    .005
+//
+// 256 are taken: a percent is below what ten seeds tell apart, and points and exact rays cost a cosine a wave.
 //
 // Errors: the rms of one surface over a large area is s but for the products of two waves, which vanish over many correlation
-// areas; (1) within .01 s^2 for M = 256 (tests/study/roughness_test.cc); its heights are normal but for an excess of -3/(2M). In double the phase
-// k.p, up to some 1e5 in 12 mm at l = 1 um, is right to 1e-11.
+// areas. Heights are normal but for an excess kurtosis of -3/(2M). In double the phase k.p, up to some 1e5 in 12 mm at l = 1 um, is
+// right to 1e-11.
 //
 // Source: spectral synthesis after Tsang, Kong, Ding and Ao, Scattering of Electromagnetic Waves: Numerical Simulations (2001),
 // chapter 4, whose (1) this is, with random instead of gridded wave vectors. The golden sequence: Kuipers and Niederreiter,

@@ -181,10 +181,9 @@ struct Subject::Parts {
     if (arrangement.kind == ArrangementKind::rings && arrangement.rings > 0) return beam_radius / (1 - variant.margin_spacings / arrangement.rings);
     return beam_radius + variant.margin_spacings * spacing_of(arrangement, beam_radius);
   }
-  // Another draw of random numbers than the arrangement's.
   std::optional<Roughness> roughness(const Noise& noise, std::uint64_t seed) const {
     if (!(noise.rms_um > 0)) return std::nullopt;
-    return Roughness(noise.rms_um * 1e-3, noise.correlation_length_um * 1e-3, ~seed);
+    return Roughness(noise.rms_um * 1e-3, noise.correlation_length_um * 1e-3, seed);
   }
   prescription::PointCloud cloud(const Variant& variant) const {
     prescription::PointCloud result;
