@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Acceptance figures 3, 4, 5, 7 and 8 of freeform.md as studies measure them: clouds through the program's own compiler and tracer,
+// Acceptance figures 3, 4, 5, 7 and 8 of freeform.md as studies measure them: clouds, triangulated, through the program's own compiler and tracer,
 // against exact rays in 50 digits. What they are of and their statistics are derived in tests/surface/lens_slow_test.cc and
 // tests/analysis/cornea_slow_test.cc; fitted orders and the price of the nearest vertex are only here.
 #include <fmt/format.h>

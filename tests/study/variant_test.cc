@@ -162,5 +162,19 @@ TEST(Measured, SaysWhyThereIsNoRow) {
   EXPECT_EQ(subject.measure(linear(0)).reason.empty(), false);
 }
 
+// A system whose other surface is a Delaunay surface has no exact rays; that of the surface under study would not do either.
+TEST(Measured, SystemOfPointsHasNoTruth) {
+  study::Subject lens(paper_lens(), 1);
+  auto model = paper_lens();
+  prescription::Shape& shape = model.surfaces.front().shape;
+  shape.kind = "delaunay";
+  shape.parameters.numbers = {{"rings", 2}, {"shape_mm", 0}, {"smoothing_um", 0}, {"max_edge_mm", INFINITY}};
+  shape.parameters.texts = {{"points", "p"}, {"format", "xyz"}, {"axes", "local"}, {"interpolation", "linear"}};
+  shape.cloud = std::make_shared<const prescription::PointCloud>(lens.cloud_of(linear(1)));
+  for (const int surface : {1, 2})
+    EXPECT_EQ(study::measure(model, surface, linear(1)).reason,
+              "surface 1 is made of points (flat facets), which have no exact rays: it must be a plane, a conic or a zernike surface");
+}
+
 }  // namespace
 }  // namespace sagitta::test
