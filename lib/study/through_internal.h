@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// One ray through one surface in any number type, whatever finds the crossing: for the exact rays, and for ways of meeting a surface
+// that the tracer does not take. Apertures and endings are the tracer's (trace/step.h).
+#pragma once
+
+#include <cstdint>
+
+#include "lib/surface/refraction.h"
+#include "lib/trace/step.h"
+
+namespace sagitta::study {
+
+using numerics::Vec3;
+using surface::Status;
+
+template <class T>
+struct Path {
+  Vec3<T> position, direction;
+  std::int32_t ended = 0;  // as in trace::RayBatch
+};
+
+template <class T>
+numerics::RigidTransform<T> transform_cast(const numerics::RigidTransform<double>& a) {
+  using numerics::vec3_cast;
+  return {{vec3_cast<T>(a.rotation.row_x), vec3_cast<T>(a.rotation.row_y), vec3_cast<T>(a.rotation.row_z)}, vec3_cast<T>(a.translation)};
+}
+
+// A ray in the frame of the surface before (before the first: global) goes on into the surface's and through it, if it has not ended.
+// `meet(position, direction)` gives the crossing. All doubles are taken as exact.
+template <class T, class Meet>
+Path<T> through(const scene::Surface& surface, int number, double index_before, double index_after, const Path<T>& ray, const Meet& meet) {
+  if (ray.ended != 0) return ray;
+  const numerics::RigidTransform<T> local_from_previous = transform_cast<T>(surface.local_from_previous);
+  Path<T> result{local_from_previous * ray.position, local_from_previous.rotation * ray.direction, 0};
+  const surface::Crossing<T> crossing = meet(result.position, result.direction);
+  const auto end = [&](Status status) {
+    result.ended = trace::ending(number, status);
+    return result;
+  };
+  if (crossing.status != Status::ok) return end(crossing.status);
+  result.position = crossing.point;
+  const T r_squared = crossing.point.x * crossing.point.x + crossing.point.y * crossing.point.y;
+  const T outer(surface.semi_diameter), inner(surface.inner_semi_diameter);
+  if (!(r_squared <= outer * outer) || r_squared < inner * inner) return end(Status::clipped);
+  Vec3<T> out = result.direction;
+  switch (trace::deflection_at(surface, index_before, index_after)) {
+    case trace::Deflection::none: break;
+    case trace::Deflection::reflect: out = surface::reflect(result.direction, crossing.normal, crossing.along); break;
+    case trace::Deflection::refract:
+      out = surface::refract(result.direction, crossing.normal, crossing.along, surface::IndexRatio<T>::of(T(index_before), T(index_after)));
+      if (!(out.x == out.x)) return end(Status::total_reflection);
+  }
+  result.direction = out;
+  return result;
+}
+
+}  // namespace sagitta::study
