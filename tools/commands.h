@@ -56,6 +56,13 @@ struct CheckOptions {
 };
 int check_command(const CheckOptions& options);
 
+struct StudyOptions {
+  std::string study;  // a name of systems/studies/, or a file
+  std::string folder;
+  int thread_count = 0;  // of the exact rays, and of variants with threads: 0
+};
+int study_command(const StudyOptions& options);
+
 struct ConvertOptions {
   std::string points, file;
   std::string format = "xyz";  // one of prescription::cloud_formats()

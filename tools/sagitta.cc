@@ -140,6 +140,16 @@ void add_convert(CLI::App& app, int& status) {
   command->callback([&status] { status = convert_command(options); });
 }
 
+void add_study(CLI::App& app, int& status) {
+  static StudyOptions options;
+  CLI::App* command = app.add_subcommand("study", "Measure error against run time: every variant of a study, as tables, plots and a page");
+  command->add_option("STUDY", options.study, "study (YAML), or the name of one of systems/studies/")->required();
+  command->add_option("-o,--output", options.folder, "folder for study.csv, study.json, study.md and the plots; finished rows there are kept")->required();
+  command->add_option("--threads", options.thread_count, "threads for the exact rays, and for variants with threads: 0 (default: as many as the machine runs)")
+      ->check(CLI::Range(1, 1024));
+  command->callback([&status] { status = study_command(options); });
+}
+
 void add_fit(CLI::App& app, int& status) {
   static FitOptions options;
   CLI::App* command = app.add_subcommand("fit", "Fit measured points: best sphere, best conic, a Zernike surface for a prescription");
@@ -195,6 +205,7 @@ int main(int argc, char** argv) {
   add_check(app, status);
   add_fit(app, status);
   add_convert(app, status);
+  add_study(app, status);
   try {
     app.parse(argc, argv);
     if (std::fflush(stdout) != 0) throw std::system_error(errno, std::generic_category());

@@ -23,6 +23,8 @@ std::string instruction_sets() {
 
 const char* version() { return SAGITTA_VERSION; }
 
+const char* build() { return SAGITTA_BUILD; }
+
 std::string about_this_build() {
   const std::string_view triangulator = scene::triangulator();
   return fmt::format("sagitta {}\n"

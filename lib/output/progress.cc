@@ -5,17 +5,27 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "lib/output/text.h"
 
 namespace sagitta::output {
+namespace {
+
+std::string in_words(double seconds) {
+  if (!(seconds < 100)) return fmt::format("{:.0f} min", std::ceil(seconds / 60));
+  return fmt::format("{:.0f} s", std::ceil(seconds));
+}
+
+}  // namespace
 
 Progress::Progress(std::string what, std::uint64_t total, ProgressManners manners)
     : what_(printable(what, 40)),
       total_(std::max<std::uint64_t>(1, total)),
       manners_(manners),
       on_terminal_(::isatty(manners.descriptor) == 1),
-      next_(std::chrono::steady_clock::now() + manners.silence) {}
+      start_(std::chrono::steady_clock::now()),
+      next_(start_ + manners.silence) {}
 
 Progress::~Progress() {
   if (shown_ > 0) show({});
@@ -30,7 +40,9 @@ void Progress::advance(std::uint64_t steps) {
   if (now < next_) return;
   next_ = now + manners_.interval;
   const auto percent = static_cast<int>(100.0 * static_cast<double>(done) / static_cast<double>(total_));
-  show(fmt::format("{}  {} %", what_, percent));
+  const bool tells = manners_.tells_time_left && done > 0;
+  const double left = std::chrono::duration<double>(now - start_).count() * (static_cast<double>(total_) / static_cast<double>(std::max<std::uint64_t>(1, done)) - 1);
+  show(fmt::format("{}  {} %{}", what_, percent, tells ? ", " + in_words(left) + " left" : ""));
 }
 
 void Progress::show(std::string line) {

@@ -17,6 +17,7 @@ struct ProgressManners {
   int descriptor = 2;  // standard error
   std::chrono::milliseconds silence{1000};
   std::chrono::milliseconds interval{100};
+  bool tells_time_left = false;  // "WHAT  42 %, 3 min left", from the time that the steps so far have taken
 };
 
 class Progress {
@@ -27,7 +28,7 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
   ~Progress();  // erases the line
 
-  // So many more steps are done. From any thread, and cheap: one that finds another drawing does not wait for it.
+  // So many more steps are done; of 0 the line is drawn anew. From any thread, and cheap: one that finds another drawing does not wait for it.
   void advance(std::uint64_t steps = 1);
 
  private:
@@ -39,6 +40,7 @@ class Progress {
   const bool on_terminal_;
   std::atomic<std::uint64_t> done_{0};
   std::mutex drawing_;
+  const std::chrono::steady_clock::time_point start_;
   std::chrono::steady_clock::time_point next_;
   std::size_t shown_ = 0;  // bytes of the line that stands there, at least its width
 };

@@ -197,7 +197,7 @@ struct Subject::Parts {
     }, scene->surface(number).shape);
     return result;
   }
-  const Truth& truth_of(const Variant& variant) {
+  const Truth& truth_of(const Variant& variant, int thread_count = 0) {
     const Noise noise = variant.is_against_clean ? Noise{} : variant.noise;
     const std::int64_t compared = std::min(variant.rays, variant.most_compared);
     const bool is_known = truth && truth->noise == noise && (truth->seed == variant.seed || !(noise.rms_um > 0)) &&
@@ -206,7 +206,7 @@ struct Subject::Parts {
     truth = Truth{noise, variant.seed, variant.pattern, compared, trace::pupil_points(variant.pattern, compared), {}};
     const auto rough = roughness(noise, variant.seed);
     truth->rays = true_rays(*scene, scene->primary, scene->fields[field], truth->pupil,
-                            {number, rough ? &*rough : nullptr, rough ? Digits::extended : Digits::fifty, 0});
+                            {number, rough ? &*rough : nullptr, rough ? Digits::extended : Digits::fifty, thread_count});
     return *truth;
   }
 };
@@ -229,6 +229,10 @@ Subject::~Subject() = default;
 Subject::Subject(Subject&&) noexcept = default;
 
 double Subject::beam_radius() const { return parts_->beam_radius; }
+
+void Subject::know_truth(const Variant& variant, int thread_count) {
+  if (parts_->reason.empty() && variant.rays >= 1) parts_->truth_of(variant, thread_count);
+}
 
 prescription::PointCloud Subject::cloud_of(const Variant& variant) const {
   return parts_->reason.empty() && variant.interpolation != Variant::as_prescribed ? parts_->cloud(variant) : prescription::PointCloud{};

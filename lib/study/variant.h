@@ -86,6 +86,8 @@ class Subject {
   Subject(Subject&&) noexcept;
 
   Measured measure(const Variant& variant);
+  // The exact rays of a variant beforehand, by so many threads (0: as many as the machine runs): a process that is forked from this one has them.
+  void know_truth(const Variant& variant, int thread_count);
   // The points of a variant, as a cloud in memory; empty where there are none, or measure() has a reason.
   prescription::PointCloud cloud_of(const Variant& variant) const;
   // The beam's radius on the surface, mm; NaN where no ray of the rim comes there.

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/study_charts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "tools/version.h"
+
+namespace sagitta::tools {
+namespace {
+
+struct Axis {
+  const char* column;
+  const char* label;
+};
+constexpr Axis density{"points_per_mm2", "points per mm²"}, time{"ns_per_ray", "time per ray at the surface (ns, one thread)"};
+
+struct PlotKind {
+  const char* file;
+  const char* title;  // after the study's
+  Axis x, y;
+  const char* fitted = nullptr;  // the quantity, where orders in the spacing are fitted
+};
+constexpr PlotKind kinds[] = {
+    {"error-time-angle", "error of the angle against time", time, {"angle_rms_arcmin", "angle, rms (arcmin)"}},
+    {"error-time-distance", "error of the place against time", time, {"distance_rms_um", "distance, rms (µm)"}},
+    {"error-density-angle", "error of the angle against density", density, {"angle_rms_arcmin", "angle, rms (arcmin)"}, "angle"},
+    {"error-density-distance", "error of the place against density", density, {"distance_rms_um", "distance, rms (µm)"}, "distance"},
+    {"spot-density", "error of the spot against density", density, {"spot_rms_error_percent", "error of the spot's RMS radius, absolute (%)"}, "spot RMS"},
+    {"time-density", "time per ray against density", density, time},
+    {"prepare-density", "preparation against density", density, {"prepare_s", "preparation (s, all threads)"}},
+    {"time-rays", "time per ray against the number of rays", {"rays", "rays"}, time}};
+
+struct Series {
+  std::string name;
+  std::vector<double> x, y;
+};
+
+// In the order in which the series first come, points by rising x where a line joins densities or rays, as they stand where it joins times.
+std::vector<Series> series_of(const std::vector<StudyRow>& rows, const PlotKind& kind) {
+  std::vector<Series> all;
+  for (const StudyRow& row : rows) {
+    if (!row.is_measured() || row.has_failed()) continue;
+    const double x = row.number(kind.x.column), y = std::abs(row.number(kind.y.column));
+    if (!(x > 0 && y > 0)) continue;  // nor has a logarithmic axis a place for it
+    auto found = std::find_if(all.begin(), all.end(), [&](const Series& one) { return one.name == row.series; });
+    if (found == all.end()) found = all.insert(all.end(), {row.series, {}, {}});
+    found->x.push_back(x);
+    found->y.push_back(y);
+  }
+  return all;
+}
+
+bool has_several(const std::vector<double>& values, std::size_t at_least) { return std::set<double>(values.begin(), values.end()).size() >= at_least; }
+
+output::ChartSeries chart_series(const Series& series, bool is_over_time) {
+  output::ChartSeries result{series.name, {}, true, {}};
+  for (std::size_t i = 0; i < series.x.size(); ++i) result.points.push_back({series.x[i], series.y[i]});
+  if (!is_over_time) std::stable_sort(result.points.begin(), result.points.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
+  const std::set<double> places(series.x.begin(), series.x.end());
+  result.is_joined = is_over_time || places.size() == series.x.size();  // of several seeds at one density: clouds of markers
+  return result;
+}
+
+}  // namespace
+
+std::vector<StudyPlot> plots_of(const prescription::StudyFile& study, const std::vector<StudyRow>& rows) {
+  std::vector<StudyPlot> plots;
+  for (const PlotKind& kind : kinds) {
+    const bool is_over_time = kind.x.column == time.column;
+    const std::vector<Series> all = series_of(rows, kind);
+    if (std::none_of(all.begin(), all.end(), [&](const Series& one) { return is_over_time || has_several(one.x, 2); })) continue;
+    StudyPlot plot{kind.file, {}, {}};
+    plot.chart.title = fmt::format("{}: {}", study.title, kind.title);
+    plot.chart.footer = fmt::format("{}{}; sagitta {}", kind.fitted ? "dashed: fitted orders in the spacing of the points, density^-1/2; " : "", processor_name(), version());
+    plot.chart.x_label = kind.x.label;
+    plot.chart.y_label = kind.y.label;
+    for (const Series& one : all) {
+      plot.chart.series.push_back(chart_series(one, is_over_time));
+      if (!kind.fitted || !has_several(one.x, 3)) continue;
+      std::vector<double> spacings;
+      for (const double x : one.x) spacings.push_back(1 / std::sqrt(x));
+      const study::Order order = study::order_of(spacings, one.y);
+      plot.orders.push_back({one.name, kind.fitted, order});
+      const auto [low, high] = std::minmax_element(one.x.begin(), one.x.end());
+      plot.chart.series.back().fit = output::PowerLaw{order.factor, -order.slope / 2, *low, *high, fmt::format("order {:.2f}", order.slope)};
+    }
+    plots.push_back(std::move(plot));
+  }
+  return plots;
+}
+
+}  // namespace sagitta::tools

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/study_page.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+
+#include "lib/output/text.h"
+#include "lib/prescription/study_keys.h"
+#include "tools/version.h"
+
+namespace sagitta::tools {
+namespace {
+
+using output::significant;
+
+// Somebody's text in a cell of a table or a line of Markdown.
+std::string plain(const std::string& text) {
+  std::string result;
+  for (const char c : output::printable(text, 10'000)) {
+    if (c == '|' || c == '<' || c == '*' || c == '`') result += '\\';
+    result += c;
+  }
+  return result;
+}
+
+std::string line_of(const std::vector<std::string>& cells) { return fmt::format("| {} |\n", fmt::join(cells, " | ")); }
+
+// Numbers stand at the right; the first column, of texts, at the left.
+std::string head_of(const std::vector<std::string>& names) {
+  std::string rule = "|---|";
+  for (std::size_t i = 1; i < names.size(); ++i) rule += "--:|";
+  return line_of(names) + rule + "\n";
+}
+
+struct PageColumn {
+  const char* column;
+  const char* name;
+  bool is_whole = false;
+};
+constexpr PageColumn page_columns[] = {{"points", "points", true}, {"rays", "rays", true}, {"distance_mean_um", "distance, mean µm"}, {"distance_rms_um", "rms µm"},
+                                       {"angle_mean_arcmin", "angle, mean arcmin"}, {"angle_rms_arcmin", "rms arcmin"}, {"spot_rms_um", "spot RMS µm"},
+                                       {"spot_rms_error_percent", "its error %"}, {"wavefront_rms_error_waves", "wavefront RMS error, waves"}, {"only_one_finds", "only one finds", true},
+                                       {"looks_per_ray", "looks a ray"}, {"prepare_s", "preparation s"}, {"ns_per_ray", "ns a ray"}, {"peak_mib", "peak MiB"}};
+
+std::string rows_table(const std::vector<StudyRow>& rows) {
+  std::vector<PageColumn> shown;  // those that have a value
+  for (const PageColumn& column : page_columns)
+    if (std::any_of(rows.begin(), rows.end(), [&](const StudyRow& row) { return std::isfinite(row.number(column.column)); })) shown.push_back(column);
+  std::vector<std::string> names{"variant"};
+  for (const PageColumn& column : shown) names.emplace_back(column.name);
+  std::string text = head_of(names), failures;
+  for (const StudyRow& row : rows) {
+    if (!row.is_measured()) continue;
+    if (row.has_failed()) {
+      failures += fmt::format("- {}: {}\n", plain(row.name), plain(row.text("failed")));
+      continue;
+    }
+    std::vector<std::string> cells{plain(row.name)};
+    for (const PageColumn& column : shown) cells.push_back(column.is_whole ? row.text(column.column) : significant(row.number(column.column), 4));
+    text += line_of(cells);
+  }
+  if (!failures.empty()) text += "\nNot measured:\n\n" + failures;
+  return text;
+}
+
+std::string orders_table(const std::vector<StudyPlot>& plots) {
+  std::string text;
+  for (const StudyPlot& plot : plots)
+    for (const FittedOrder& one : plot.orders)
+      text += line_of({plain(one.series), one.quantity, fmt::format("{:.3f}", one.order.slope), std::isnan(one.order.standard_error) ? "-" : fmt::format("{:.3f}", one.order.standard_error),
+                       fmt::format("{}", one.order.pairs)});
+  if (text.empty()) return text;
+  return "\n## Orders\n\nThe error is fitted by a h^order, h = density^(-1/2) the spacing of the points; least squares of the logarithms, with the standard error.\n\n" +
+         head_of({"series", "error of", "order", "standard error", "rows"}) + text;
+}
+
+std::string settings_of(const prescription::Parameters& where) {
+  std::vector<std::string> words;
+  const auto add = [&](prescription::KeyTable keys) {
+    for (const numerics::Key& key : keys) {
+      if (const auto text = where.texts.find(key.name); text != where.texts.end()) words.push_back(text->second);
+      if (const auto number = where.numbers.find(key.name); number != where.numbers.end()) words.push_back(fmt::format("{} {:.9g}", key.name, number->second));
+    }
+  };
+  add(prescription::variant_keys);
+  add(prescription::roughness_keys);
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+// Ours is the mean over the rows that a figure is of.
+std::string paper_table(const prescription::StudyFile& study, const std::vector<StudyRow>& rows) {
+  std::string text;
+  for (const prescription::PublishedFigure& figure : study.paper)
+    for (const auto& [column, printed] : figure.values) {
+      double sum = 0;
+      int count = 0;
+      for (const StudyRow& row : rows) {
+        const double value = row.number(column);
+        if (!std::isfinite(value) || row.has_failed() || !prescription::has_settings(*row.settings, figure.where)) continue;
+        sum += value;
+        ++count;
+      }
+      const double ours = sum / count;
+      const double difference = 100 * (ours / printed - 1);
+      text += line_of({plain(settings_of(figure.where)), column, significant(printed, 4), significant(ours, 4), std::isfinite(difference) ? fmt::format("{:+.1f}", difference) : "-",
+                       fmt::format("{}", count), plain(figure.note)});
+    }
+  if (text.empty()) return text;
+  return "\n## The paper's figures beside ours\n\n" + head_of({"settings", "quantity", "printed", "here", "difference %", "rows", "note"}) + text;
+}
+
+}  // namespace
+
+std::string study_page(const prescription::StudyFile& study, const std::vector<StudyRow>& rows, const std::vector<StudyPlot>& plots) {
+  const auto measured = std::count_if(rows.begin(), rows.end(), [](const StudyRow& row) { return row.is_measured() && !row.has_failed(); });
+  std::string text = fmt::format("# {}\n\n", plain(study.title));
+  if (!study.about.empty()) text += plain(study.about) + "\n\n";
+  if (!study.source.empty()) text += "Source: " + plain(study.source) + "\n\n";
+  const auto& surface = study.system.surfaces[static_cast<std::size_t>(study.surface_number - 1)];
+  text += fmt::format("System: {}, surface {} ({}), field {}, {:g} nm.\n", plain(study.system.name), study.surface_number, plain(surface.name), study.field, study.system.primary_wavelength_nm());
+  text += fmt::format("Machine: {}, {} threads; sagitta {}, {}.\n\n", plain(processor_name()), std::thread::hardware_concurrency(), version(), build());
+  text += fmt::format("{} of {} variants. Distances and angles are of each ray from the exact one at the surface, spots at the image, over the rays that both find; times are medians of repeated "
+                      "runs of processor time, preparation and tracing apart; the peak is that of the variant's own process, with the exact rays. `study.csv` has all of it in full.\n\n## Rows\n\n",
+                      measured, rows.size());
+  text += rows_table(rows) + orders_table(plots) + paper_table(study, rows);
+  if (!plots.empty()) text += "\n## Plots\n";
+  for (const StudyPlot& plot : plots) text += fmt::format("\n![{}]({}.svg)\n", plain(plot.chart.title), plot.file);
+  if (!study.notes.empty()) text += "\n## Notes\n\n" + plain(study.notes) + "\n";
+  return text;
+}
+
+}  // namespace sagitta::tools

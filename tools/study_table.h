@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// The rows of a study: what study.csv holds, from settings and measurements, and what the page and its plots read from it.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "lib/output/records.h"
+#include "lib/prescription/study_file.h"
+#include "lib/study/variant.h"
+
+namespace sagitta::tools {
+
+study::Variant variant_of(const prescription::Parameters& settings);
+
+// One variant; `cells` are those of study_columns(), empty until it is measured.
+struct StudyRow {
+  const prescription::Parameters* settings = nullptr;
+  std::string name, series;  // series: the name without density, tolerance and seed
+  std::string key;           // what the measurement depends on, as a hash: settings, system, program, processor
+  std::vector<std::string> cells;
+
+  bool is_measured() const { return !cells.empty(); }
+  const std::string& text(std::string_view column) const;
+  double number(std::string_view column) const;  // NaN where there is none
+  bool has_failed() const { return is_measured() && !text("failed").empty(); }
+};
+
+const std::vector<output::RecordColumn>& study_columns();
+
+// The variants of a study in its order, none measured.
+std::vector<StudyRow> rows_of(const prescription::StudyFile& study);
+
+struct MeasuredRow {
+  study::Measured measured;
+  double peak_mib = 0;  // of the process that measured it
+};
+void fill(StudyRow& row, const prescription::StudyFile& study, const MeasuredRow& measured);
+// Takes the rows of an earlier study.csv that are finished and have the same keys; how many.
+int take_finished(std::vector<StudyRow>& rows, const prescription::StudyFile& study, std::string_view csv);
+
+output::Records records_of(const std::vector<StudyRow>& rows);
+
+// Such as "Intel(R) Xeon(R) ...", "" where the system does not say.
+std::string processor_name();
+
+}  // namespace sagitta::tools
