@@ -16,7 +16,7 @@ struct Axis {
   const char* column;
   const char* label;
 };
-constexpr Axis density{"points_per_mm2", "points per mm²"}, time{"ns_per_ray", "time per ray at the surface (ns, one thread)"};
+constexpr Axis density{"points_per_mm2", "points per mm²"}, time{"ns_per_ray", "processor time per ray at the surface (ns)"};
 
 struct PlotKind {
   const char* file;
@@ -75,7 +75,7 @@ std::vector<StudyPlot> plots_of(const prescription::StudyFile& study, const std:
     if (std::none_of(all.begin(), all.end(), [&](const Series& one) { return is_over_time || has_several(one.x, 2); })) continue;
     StudyPlot plot{kind.file, {}, {}};
     plot.chart.title = fmt::format("{}: {}", study.title, kind.title);
-    plot.chart.footer = fmt::format("{}{}; sagitta {}", kind.fitted ? "dashed: fitted orders in the spacing of the points, density^-1/2; " : "", processor_name(), version());
+    plot.chart.footer = fmt::format("{}{}; sagitta {}", kind.fitted ? "dashed: fitted orders in the spacing of the points, 1/√density; " : "", processor_name(), version());
     plot.chart.x_label = kind.x.label;
     plot.chart.y_label = kind.y.label;
     for (const Series& one : all) {

@@ -109,7 +109,7 @@ std::string paper_table(const prescription::StudyFile& study, const std::vector<
                        fmt::format("{}", count), plain(figure.note)});
     }
   if (text.empty()) return text;
-  return "\n## The paper's figures beside ours\n\n" + head_of({"settings", "quantity", "printed", "here", "difference %", "rows", "note"}) + text;
+  return "\n## Reference figures beside ours\n\n" + head_of({"settings", "quantity", "reference", "here", "difference %", "rows", "note"}) + text;
 }
 
 }  // namespace

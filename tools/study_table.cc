@@ -79,7 +79,7 @@ void name_rows(std::vector<StudyRow>& rows) {
     for (const Word& word : words) {
       const std::string key = word.key, value = value_of(*row.settings, word.key);
       const bool is_of_points = key == "points_per_mm2" || key == "rings" || key == "meridians" || key == "margin_spacings" || key == "shape_spacings" || key == "search";
-      const bool is_nothing = value == "0" && key != "threads";
+      const bool is_nothing = (value == "0" && key != "threads") || value == "walk";
       if (values[key].size() < 2 || (is_of_points && !is_sampled) || is_nothing || (key == "shape_spacings" && row.settings->text("interpolation") != "multiquadric") ||
           ((key == "correlation_length_um" || key == "truth") && row.settings->number("rms_um") == 0))
         continue;

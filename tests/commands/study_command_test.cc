@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <signal.h>
+#include <sys/wait.h>
+
+#include <chrono>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "tests/support/program.h"
+
+namespace sagitta::test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+const std::string lens =
+    "sagitta: 1\nname: Lens\nwavelengths_nm: [855]\naperture: {entrance_pupil_diameter_mm: 4}\nsurfaces:\n"
+    "  - {name: front, stop: true, conic: {radius_mm: 20}, thickness_mm: 60, medium: {index: 1.5}}\n  - {name: image}\n";
+const std::string head = "sagitta_study: 1\nname: tiny\ntitle: A tiny study\nabout: What it is of.\nsystem: lens.yaml\nsurface: front\n";
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+// Runs a study of these variants in the folder, output in its "out".
+Outcome run_study(const Folder& folder, const std::string& variants, const std::string& before = {}) {
+  folder.file("lens.yaml", lens);
+  return run_program("study '" + folder.file("study.yaml", head + variants) + "' -o '" + folder.path("out") + "' --threads 1", before);
+}
+
+const std::string few = "variants:\n  - {points_per_mm2: [4, 16, 64], rays: 300}\n  - {interpolation: analytic, rays: 300}\n";
+
+TEST(StudyCommand, writes_a_row_for_every_variant_a_page_and_plots) {
+  const Folder folder;
+  const Outcome run = run_study(folder, few + "paper:\n  - {where: {points_per_mm2: 16}, angle_mean_arcmin: 1, note: made up}\nnotes: The end.\n");
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(run.err, "");
+  EXPECT_THAT(run.out, HasSubstr("A tiny study: 4 of 4 variants measured, 0 of them before"));
+
+  const auto lines = lines_of(read_text(folder.path("out/study.csv")));
+  ASSERT_EQ(lines.size(), 5u);
+  EXPECT_THAT(lines[0], testing::StartsWith("study,variant,interpolation,arrangement,points_per_mm2,points,triangles,rays,threads,tolerance,distance_mean_um,distance_rms_um,angle_mean_arcmin,"
+                                            "angle_rms_arcmin,spot_rms_um,spot_rms_error_percent,wavefront_rms_error_waves,only_one_finds,prepare_s,ns_per_ray,peak_mib,"));
+  EXPECT_THAT(lines[1], testing::StartsWith("tiny,linear regular 4 per mm²,linear,regular,4,"));
+  EXPECT_THAT(lines[4], testing::StartsWith("tiny,analytic,analytic,,,0,0,"));
+
+  const json found = json::parse(read_text(folder.path("out/study.json")));
+  EXPECT_EQ(found["title"], "A tiny study");
+  ASSERT_EQ(found["rows"].size(), 4u);
+  for (const json& row : found["rows"]) {
+    EXPECT_GE(row["rays"].get<int>(), 300);
+    EXPECT_EQ(row["only_one_finds"], 0);
+    EXPECT_GT(row["ns_per_ray"].get<double>(), 0);
+    EXPECT_GT(row["peak_mib"].get<double>(), 1);
+    EXPECT_EQ(row["failed"], "");
+  }
+  // Spacings of 1/2, 1/4, 1/8 mm: errors fall by 4 and by 2 (tests/study/variant_test.cc derives them), here to a tenth of 300 rays.
+  for (int i = 0; i < 2; ++i) {
+    const auto ratio = [&](const char* key) { return found["rows"][i][key].get<double>() / found["rows"][i + 1][key].get<double>(); };
+    EXPECT_NEAR(ratio("distance_mean_um"), 4, .8);
+    EXPECT_NEAR(ratio("angle_mean_arcmin"), 2, .4);
+  }
+  EXPECT_LT(found["rows"][3]["distance_rms_um"].get<double>(), 1e-10);
+
+  const std::string page = read_text(folder.path("out/study.md"));
+  for (const char* text : {"# A tiny study\n", "What it is of.", "4 of 4 variants", "| linear regular 16 per mm² |", "## Orders", "| linear regular | distance |", "| made up |", "The end."})
+    EXPECT_THAT(page, HasSubstr(text));
+  int plots = 0;
+  for (std::size_t at = 0; (at = page.find("](", at)) != std::string::npos; ++plots) {
+    at += 2;
+    const std::string file = page.substr(at, page.find(')', at) - at);
+    EXPECT_THAT(read_text(folder.path("out/" + file)), HasSubstr("<svg")) << file;
+    EXPECT_TRUE(fs::exists(fs::path(folder.path("out/" + file)).replace_extension(".png"))) << file;
+  }
+  EXPECT_GE(plots, 6);
+}
+
+TEST(StudyCommand, keeps_finished_rows_and_measures_what_is_new) {
+  const Folder folder;
+  ASSERT_EQ(run_study(folder, few).status, 0);
+  const auto first = lines_of(read_text(folder.path("out/study.csv")));
+  const Outcome same = run_study(folder, few);
+  EXPECT_THAT(same.err, HasSubstr("4 of 4 rows are kept"));
+  EXPECT_EQ(lines_of(read_text(folder.path("out/study.csv"))), first);  // to the last digit of the times: nothing was measured
+
+  const Outcome more = run_study(folder, "variants:\n  - {points_per_mm2: [4, 8, 64], rays: 300}\n");
+  EXPECT_THAT(more.err, HasSubstr("2 of 3 rows are kept"));
+  const auto second = lines_of(read_text(folder.path("out/study.csv")));
+  EXPECT_THAT(second, ElementsAre(first[0], first[1], testing::StartsWith("tiny,linear regular 8 per mm²"), first[3]));
+
+  const std::string other = folder.file("lens.yaml", lens + "source: another text of the system\n");
+  const Outcome changed = run_program("study '" + folder.path("study.yaml") + "' -o '" + folder.path("out") + "'");
+  EXPECT_EQ(changed.status, 0);
+  EXPECT_THAT(changed.err, Not(HasSubstr("kept")));
+}
+
+// SIGKILL while it measures: what had been finished is kept, whole.
+TEST(StudyCommand, killed_in_the_middle_goes_on_where_it_was) {
+  const Folder folder;
+  folder.file("lens.yaml", lens);
+  const std::string study = folder.file("study.yaml", head + "variants:\n  - {points_per_mm2: 400, rays: 20000, seed: [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12], arrangement: random}\n");
+  const std::string out = folder.path("out"), log = folder.path("log");
+  const pid_t child = fork();
+  if (child == 0) {
+    if (!std::freopen(log.c_str(), "w", stderr) || !std::freopen(log.c_str(), "w", stdout)) _exit(126);
+    execl(SAGITTA_PROGRAM, SAGITTA_PROGRAM, "study", study.c_str(), "-o", out.c_str(), nullptr);
+    _exit(127);
+  }
+  std::size_t rows = 0;
+  for (int i = 0; i < 30000 && rows < 3; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    rows = lines_of(read_text(out + "/study.csv")).size();
+  }
+  kill(child, SIGKILL);
+  int status = 0;
+  waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFSIGNALED(status)) << "it was over before it was killed";
+  const auto before = lines_of(read_text(out + "/study.csv"));
+  ASSERT_GE(before.size(), 3u);
+  ASSERT_LT(before.size(), 13u);
+  const Outcome again = run_program("study '" + study + "' -o '" + out + "'");
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_THAT(again.err, HasSubstr(std::to_string(before.size() - 1) + " of 12 rows are kept"));
+  const auto after = lines_of(read_text(out + "/study.csv"));
+  ASSERT_EQ(after.size(), 13u);
+  for (std::size_t i = 0; i < before.size(); ++i) EXPECT_EQ(after[i], before[i]);
+}
+
+// A file-size limit of 4 blocks of 512 bytes stands for a full disk: two rows have room, four have not.
+TEST(StudyCommand, a_full_disk_loses_no_finished_row) {
+  const Folder folder;
+  const std::string two = "variants:\n  - {points_per_mm2: [4, 16], rays: 300}\n";
+  ASSERT_EQ(run_study(folder, two).status, 0);
+  const std::string before = read_text(folder.path("out/study.csv"));
+  ASSERT_LT(before.size(), 2048u);
+  const Outcome full = run_study(folder, few, "ulimit -f 4; ");
+  EXPECT_EQ(full.status, 1);
+  EXPECT_THAT(full.err, HasSubstr("study.csv"));
+  EXPECT_EQ(lines_of(read_text(folder.path("out/study.csv")))[1], lines_of(before)[1]);
+  const Outcome again = run_study(folder, few);
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_THAT(again.err, testing::ContainsRegex("[23] of 4 rows are kept"));
+}
+
+// What no process has memory for is one failed row, measured anew by the next run.
+TEST(StudyCommand, a_variant_that_fails_takes_no_other_with_it) {
+#if defined(__SANITIZE_ADDRESS__)
+  GTEST_SKIP() << "AddressSanitizer takes more address space than the limit";
+#endif
+  const Folder folder;
+  const Outcome run = run_study(folder, "variants:\n  - {points_per_mm2: [4, 1e7, 16], rays: 300}\n", "ulimit -v 1000000; ");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_THAT(run.err, HasSubstr("linear regular 10000000 per mm²: not enough memory"));
+  EXPECT_THAT(run.out, HasSubstr("2 of 3 variants measured"));
+  const json found = json::parse(read_text(folder.path("out/study.json")));
+  ASSERT_EQ(found["rows"].size(), 3u);
+  EXPECT_EQ(found["rows"][1]["failed"], "not enough memory");
+  EXPECT_TRUE(found["rows"][1]["distance_rms_um"].is_null());
+  EXPECT_GT(found["rows"][2]["distance_rms_um"].get<double>(), 0);
+  EXPECT_THAT(read_text(folder.path("out/study.md")), HasSubstr("- linear regular 10000000 per mm²: not enough memory"));
+}
+
+TEST(StudyCommand, says_what_is_wrong_and_writes_nothing) {
+  const Folder folder;
+  const Outcome wrong = run_study(folder, "variants:\n  - {points_per_mm2: 4, interpolation: c2}\n");
+  EXPECT_EQ(wrong.status, 1);
+  EXPECT_THAT(wrong.err, HasSubstr("study.yaml:8:43: error: interpolation must be one of"));
+  EXPECT_THAT(wrong.err, HasSubstr("hint: did you mean 'c1'?"));
+  EXPECT_FALSE(fs::exists(folder.path("out")));
+  const Outcome unknown = run_program("study lense -o '" + folder.path("out") + "'");
+  EXPECT_EQ(unknown.status, 1);
+  EXPECT_THAT(unknown.err, HasSubstr("there is no study 'lense'\n  hint: did you mean 'lens'?"));
+  EXPECT_EQ(run_program("study lens").status, 2);
+}
+
+}  // namespace
+}  // namespace sagitta::test
