@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "tools/version.h"
@@ -16,7 +17,7 @@ struct Axis {
   const char* column;
   const char* label;
 };
-constexpr Axis density{"points_per_mm2", "points per mm²"}, time{"ns_per_ray", "processor time per ray at the surface (ns)"};
+constexpr Axis density{"points_per_mm2", "points per mm²"}, rays{"rays", "rays"}, time{"ns_per_ray", "processor time per ray at the surface (ns)"};
 
 struct PlotKind {
   const char* file;
@@ -32,22 +33,32 @@ constexpr PlotKind kinds[] = {
     {"spot-density", "error of the spot against density", density, {"spot_rms_error_percent", "error of the spot's RMS radius, absolute (%)"}, "spot RMS"},
     {"time-density", "time per ray against density", density, time},
     {"prepare-density", "preparation against density", density, {"prepare_s", "preparation (s, all threads)"}},
-    {"time-rays", "time per ray against the number of rays", {"rays", "rays"}, time}};
+    {"time-rays", "time per ray against the number of rays", rays, time}};
 
 struct Series {
   std::string name;
   std::vector<double> x, y;
 };
 
+// The number of rays that most variants have, of equally many the larger: plots of densities and of errors are of these.
+double usual_rays(const std::vector<StudyRow>& rows) {
+  std::map<double, int> count;
+  for (const StudyRow& row : rows) ++count[row.settings->number("rays")];
+  return std::max_element(count.begin(), count.end(), [](const auto& a, const auto& b) { return a.second < b.second || (a.second == b.second && a.first < b.first); })->first;
+}
+
 // In the order in which the series first come, points by rising x where a line joins densities or rays, as they stand where it joins times.
 std::vector<Series> series_of(const std::vector<StudyRow>& rows, const PlotKind& kind) {
   std::vector<Series> all;
+  const bool is_over_rays = kind.x.column == rays.column;
+  const double usual = usual_rays(rows);
   for (const StudyRow& row : rows) {
-    if (!row.is_measured() || row.has_failed()) continue;
+    if (!row.is_measured() || row.has_failed() || (!is_over_rays && row.settings->number("rays") != usual)) continue;
+    const std::string& name = is_over_rays ? row.of_any_rays : row.series;
     const double x = row.number(kind.x.column), y = std::abs(row.number(kind.y.column));
     if (!(x > 0 && y > 0)) continue;  // nor has a logarithmic axis a place for it
-    auto found = std::find_if(all.begin(), all.end(), [&](const Series& one) { return one.name == row.series; });
-    if (found == all.end()) found = all.insert(all.end(), {row.series, {}, {}});
+    auto found = std::find_if(all.begin(), all.end(), [&](const Series& one) { return one.name == name; });
+    if (found == all.end()) found = all.insert(all.end(), {name, {}, {}});
     found->x.push_back(x);
     found->y.push_back(y);
   }
@@ -71,11 +82,13 @@ std::vector<StudyPlot> plots_of(const prescription::StudyFile& study, const std:
   std::vector<StudyPlot> plots;
   for (const PlotKind& kind : kinds) {
     const bool is_over_time = kind.x.column == time.column;
-    const std::vector<Series> all = series_of(rows, kind);
-    if (std::none_of(all.begin(), all.end(), [&](const Series& one) { return is_over_time || has_several(one.x, 2); })) continue;
+    std::vector<Series> all = series_of(rows, kind);
+    if (!is_over_time) std::erase_if(all, [](const Series& one) { return !has_several(one.x, 2); });
+    if (all.empty()) continue;
     StudyPlot plot{kind.file, {}, {}};
     plot.chart.title = fmt::format("{}: {}", study.title, kind.title);
     plot.chart.footer = fmt::format("{}{}; sagitta {}", kind.fitted ? "dashed: fitted orders in the spacing of the points, 1/√density; " : "", processor_name(), version());
+    if (kind.x.column != rays.column) plot.chart.footer = fmt::format("{:g} rays; {}", usual_rays(rows), plot.chart.footer);
     plot.chart.x_label = kind.x.label;
     plot.chart.y_label = kind.y.label;
     for (const Series& one : all) {

@@ -59,8 +59,8 @@ struct Word {
   bool is_in_series;
 };
 constexpr Word words[] = {{"points_per_mm2", "{} per mm²", false}, {"rings", "{} rings", true}, {"meridians", "{} meridians", true}, {"tolerance_mm", "to {} mm", false},
-                          {"margin_spacings", "margin {}", true}, {"shape_spacings", "shape {}", true}, {"search", "{}", true}, {"pattern", "{}", true},
-                          {"rays", "{} rays", true}, {"compared_rays", "{} compared", true}, {"threads", "{} threads", true}, {"rms_um", "roughness {} µm", true},
+                          {"margin_spacings", "margin {}", true}, {"cloud_radius_mm", "radius {} mm", true}, {"shape_spacings", "shape {}", true}, {"search", "{}", true}, {"pattern", "{}", true},
+                          {"rays", "{} rays", false}, {"threads", "{} threads", true}, {"rms_um", "roughness {} µm", true},
                           {"correlation_length_um", "over {} µm", true}, {"truth", "against the {} surface", true}, {"seed", "seed {}", false}};
 
 std::string value_of(const Parameters& settings, const char* key) {
@@ -75,16 +75,17 @@ void name_rows(std::vector<StudyRow>& rows) {
   for (StudyRow& row : rows) {
     const bool is_sampled = row.settings->text("interpolation") != study::Variant::as_prescribed;
     row.series = row.settings->text("interpolation") + (is_sampled ? " " + row.settings->text("arrangement") : "");
-    row.name = row.series;
+    row.name = row.of_any_rays = row.series;
     for (const Word& word : words) {
       const std::string key = word.key, value = value_of(*row.settings, word.key);
-      const bool is_of_points = key == "points_per_mm2" || key == "rings" || key == "meridians" || key == "margin_spacings" || key == "shape_spacings" || key == "search";
+      const bool is_of_points = key == "points_per_mm2" || key == "rings" || key == "meridians" || key == "margin_spacings" || key == "cloud_radius_mm" || key == "shape_spacings" || key == "search";
       const bool is_nothing = (value == "0" && key != "threads") || value == "walk";
       if (values[key].size() < 2 || (is_of_points && !is_sampled) || is_nothing || (key == "shape_spacings" && row.settings->text("interpolation") != "multiquadric") ||
           ((key == "correlation_length_um" || key == "truth") && row.settings->number("rms_um") == 0))
         continue;
       const std::string text = " " + fmt::format(fmt::runtime(word.format), value);
       row.name += text;
+      if (key != "rays") row.of_any_rays += text;
       if (word.is_in_series) row.series += text;
     }
   }
@@ -117,11 +118,12 @@ void add(Cells& cells, const study::Row& row) {
                     {"spot_rms_um", cell(row.spot.rms_radius_um)}, {"true_spot_rms_um", cell(row.spot.true_rms_radius_um)}, {"spot_rms_error_percent", cell(row.spot.rms_radius_percent)},
                     {"wavefront_rms_error_waves", cell(row.wavefront_rms_waves)}, {"wavefront_without_tilt_waves", cell(row.wavefront_rms_without_tilt_waves)},
                     {"only_one_finds", cell(found.by_one_only())}, {"only_truth_finds", cell(found.by_truth_only)}, {"only_variant_finds", cell(found.by_variant_only)},
-                    {"both_find", cell(found.by_both)}, {"cloud_radius_mm", cell(row.cloud_radius_mm)}, {"looks_per_ray", cell(row.looks_per_ray)},
+                    {"both_find", cell(found.by_both)}, {"looks_per_ray", cell(row.looks_per_ray)},
                     {"prepare_s", cell(row.prepare_s.median)}, {"prepare_least_s", cell(row.prepare_s.least)}, {"prepare_most_s", cell(row.prepare_s.most)},
                     {"prepare_wall_s", cell(row.prepare_wall_s.median)}, {"prepare_runs", cell(row.prepare_s.runs)}, {"ns_per_ray", cell(row.ns_per_ray.median)},
                     {"ns_per_ray_least", cell(row.ns_per_ray.least)}, {"ns_per_ray_most", cell(row.ns_per_ray.most)}, {"wall_ns_per_ray", cell(row.wall_ns_per_ray.median)},
                     {"trace_runs", cell(row.ns_per_ray.runs)}});
+  cells["cloud_radius_mm"] = cell(row.cloud_radius_mm);
   cells["rays"] = cell(row.rays);
   cells["compared_rays"] = cell(row.compared);
 }
@@ -150,6 +152,7 @@ study::Variant variant_of(const Parameters& settings) {
                          static_cast<int>(whole("rings")), static_cast<int>(whole("meridians"))};
   variant.search = settings.text("search") == "nearest_vertex" ? study::Search::nearest_vertex : study::Search::walk;
   variant.margin_spacings = settings.number("margin_spacings");
+  variant.cloud_radius_mm = settings.number("cloud_radius_mm");
   variant.shape_spacings = settings.number("shape_spacings");
   variant.noise = {settings.number("rms_um"), settings.number("correlation_length_um")};
   variant.is_against_clean = settings.text("truth") == "clean";
@@ -185,7 +188,7 @@ double StudyRow::number(std::string_view column) const {
 std::vector<StudyRow> rows_of(const StudyFile& study) {
   const std::string basis = basis_of(study);
   std::vector<StudyRow> rows;
-  for (const Parameters& settings : study.variants) rows.push_back({&settings, "", "", hash_of(basis + settings_text(settings)), {}});
+  for (const Parameters& settings : study.variants) rows.push_back({&settings, "", "", "", hash_of(basis + settings_text(settings)), {}});
   name_rows(rows);
   return rows;
 }

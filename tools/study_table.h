@@ -17,7 +17,9 @@ study::Variant variant_of(const prescription::Parameters& settings);
 // One variant; `cells` are those of study_columns(), empty until it is measured.
 struct StudyRow {
   const prescription::Parameters* settings = nullptr;
-  std::string name, series;  // series: the name without density, tolerance and seed
+  std::string name;
+  std::string series;        // the name without density, number of rays, tolerance and seed
+  std::string of_any_rays;   // the name without the number of rays
   std::string key;           // what the measurement depends on, as a hash: settings, system, program, processor
   std::vector<std::string> cells;
 

@@ -35,6 +35,7 @@ inline constexpr std::array variant_keys{
     numerics::Key{.name = "rings", .meaning = "number of rings, in place of a density", .range = {.low = 1, .high = 1e4, .whole = true}},
     numerics::Key{.name = "meridians", .meaning = "points on each ring", .range = {.low = 3, .high = 1e5, .whole = true}},
     numerics::Key{.name = "margin_spacings", .meaning = "how far the points reach beyond the beam", .range = {0, 1000}, .fallback = 3},
+    numerics::Key{.name = "cloud_radius_mm", .meaning = "how far the points reach, in place of a margin", .range = numerics::not_negative},
     numerics::Key{.name = "shape_spacings", .meaning = "shape parameter of multiquadrics, in spacings of the points", .range = numerics::positive, .fallback = 1},
     numerics::Key{.name = "search", .kind = numerics::ValueKind::text, .meaning = "how a facet is found; nearest_vertex: as a baseline", .choices = "walk|nearest_vertex"},
     numerics::Key{.name = "tolerance_mm", .meaning = "of Newton's method on a surface as prescribed; 0: the tracer's own way", .range = {0, 1}},
