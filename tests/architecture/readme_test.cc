@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "lib/prescription/keys.h"
+#include "lib/prescription/study_keys.h"
 #include "lib/surface/status.h"
 
 namespace {
@@ -34,7 +35,9 @@ TEST(Readme, NamesEveryKeyOfThePrescription) {
   for (const prescription::KeyTable table :
        {prescription::KeyTable(prescription::system_keys), prescription::KeyTable(prescription::aperture_keys),
         prescription::KeyTable(prescription::field_keys), prescription::KeyTable(prescription::object_keys),
-        prescription::KeyTable(prescription::surface_keys), prescription::KeyTable(prescription::medium_keys)})
+        prescription::KeyTable(prescription::surface_keys), prescription::KeyTable(prescription::medium_keys),
+        prescription::KeyTable(prescription::study_keys), prescription::KeyTable(prescription::variant_keys),
+        prescription::KeyTable(prescription::roughness_keys), prescription::KeyTable(prescription::paper_keys)})
     check(table);
   for (const auto& shape : prescription::shape_kinds()) {
     EXPECT_TRUE(names(text, shape.name)) << shape.name;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Studies as the program runs them; their points are triangulated.
 #include <gmock/gmock.h>
 #include <signal.h>
 #include <sys/wait.h>
