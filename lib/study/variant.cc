@@ -68,13 +68,14 @@ struct View {
   }
 };
 
-prescription::Shape shape_of_points(prescription::PointCloud cloud, const Variant& variant, double spacing) {
+using CloudPointer = std::shared_ptr<const prescription::PointCloud>;
+prescription::Shape shape_of_points(CloudPointer cloud, const Variant& variant, double spacing) {
   prescription::Shape shape;
   shape.kind = surface::Facets::kind;
   shape.parameters.numbers = {{"rings", 2}, {"shape_mm", variant.shape_spacings * spacing}, {"smoothing_um", 0},
                               {"max_edge_mm", std::numeric_limits<double>::infinity()}};
-  shape.parameters.texts = {{"points", cloud.file}, {"format", "xyz"}, {"axes", "local"}, {"interpolation", variant.interpolation}};
-  shape.cloud = std::make_shared<const prescription::PointCloud>(std::move(cloud));
+  shape.parameters.texts = {{"points", cloud->file}, {"format", "xyz"}, {"axes", "local"}, {"interpolation", variant.interpolation}};
+  shape.cloud = std::move(cloud);
   return shape;
 }
 
@@ -161,6 +162,15 @@ struct Truth {
   TrueRaysResult rays;
 };
 
+// A rough cloud takes as long to make as to triangulate.
+struct RoughCloud {
+  Arrangement arrangement;
+  Noise noise;
+  std::uint64_t seed = 0;
+  double radius = 0;
+  CloudPointer cloud;
+};
+
 }  // namespace
 
 struct Subject::Parts {
@@ -171,6 +181,7 @@ struct Subject::Parts {
   std::string reason;
   double beam_radius = nan;
   std::optional<Truth> truth;
+  std::optional<RoughCloud> rough_cloud;
   std::optional<analysis::WavefrontResult> wavefront;
 
   View view(const scene::Scene& of) const { return {of, of.fields[field], number}; }
@@ -185,7 +196,16 @@ struct Subject::Parts {
     if (!(noise.rms_um > 0)) return std::nullopt;
     return Roughness(noise.rms_um * 1e-3, noise.correlation_length_um * 1e-3, seed);
   }
-  prescription::PointCloud cloud(const Variant& variant) const {
+  CloudPointer cloud(const Variant& variant) {
+    if (!(variant.noise.rms_um > 0)) return std::make_shared<const prescription::PointCloud>(new_cloud(variant));
+    const bool is_known = rough_cloud && rough_cloud->arrangement == variant.arrangement && rough_cloud->noise == variant.noise &&
+                          rough_cloud->seed == variant.seed && rough_cloud->radius == radius(variant);
+    if (is_known) return rough_cloud->cloud;
+    rough_cloud.reset();
+    rough_cloud = RoughCloud{variant.arrangement, variant.noise, variant.seed, radius(variant), std::make_shared<const prescription::PointCloud>(new_cloud(variant))};
+    return rough_cloud->cloud;
+  }
+  prescription::PointCloud new_cloud(const Variant& variant) const {
     prescription::PointCloud result;
     result.file = fmt::format("{} points", name_of(variant.arrangement.kind));
     const auto sites = sites_over_disc(variant.arrangement, radius(variant), variant.seed);
@@ -212,7 +232,7 @@ struct Subject::Parts {
 };
 
 Subject::Subject(prescription::Model system, int surface_number, std::size_t field)
-    : parts_(new Parts{std::move(system), surface_number, field, {}, {}, nan, {}, {}}) {
+    : parts_(new Parts{std::move(system), surface_number, field, {}, {}, nan, {}, {}, {}}) {
   Parts& parts = *parts_;
   scene::CompileResult compiled = scene::compile(parts.model);
   if (!compiled.scene) parts.reason = first_error(compiled.findings);
@@ -230,8 +250,8 @@ Subject::Subject(Subject&&) noexcept = default;
 
 double Subject::beam_radius() const { return parts_->beam_radius; }
 
-prescription::PointCloud Subject::cloud_of(const Variant& variant) const {
-  return parts_->reason.empty() && variant.interpolation != Variant::as_prescribed ? parts_->cloud(variant) : prescription::PointCloud{};
+prescription::PointCloud Subject::cloud_of(const Variant& variant) {
+  return parts_->reason.empty() && variant.interpolation != Variant::as_prescribed ? *parts_->cloud(variant) : prescription::PointCloud{};
 }
 
 Measured Subject::measure(const Variant& variant) {
@@ -248,9 +268,9 @@ Measured Subject::measure(const Variant& variant) {
   Row row;
   prescription::Model model = parts.model;
   if (is_sampled) {
-    prescription::PointCloud cloud = parts.cloud(variant);
+    CloudPointer cloud = parts.cloud(variant);
     row.cloud_radius_mm = parts.radius(variant);
-    row.points = static_cast<std::int64_t>(cloud.points.size());
+    row.points = static_cast<std::int64_t>(cloud->points.size());
     row.points_per_mm2 = static_cast<double>(row.points) / (std::numbers::pi * row.cloud_radius_mm * row.cloud_radius_mm);
     model.surfaces[at(parts.number)].shape = shape_of_points(std::move(cloud), variant, parts.spacing(variant));
   }

@@ -76,8 +76,8 @@ struct Measured {
   std::string reason;  // why there is none
 };
 
-// A system and its surface under study. Keeps the truth of the last variant: variants that share it (noise, seed, pattern, rays) are best
-// measured one after the other.
+// A system and its surface under study. Keeps the truth and the rough cloud of the last variant: variants that share them (noise, seed, and pattern and
+// rays or arrangement) are best measured one after the other.
 class Subject {
  public:
   // The field counts from 0, the surface from 1; the wavelength is the primary one.
@@ -87,7 +87,7 @@ class Subject {
 
   Measured measure(const Variant& variant);
   // The points of a variant, as a cloud in memory; empty where there are none, or measure() has a reason.
-  prescription::PointCloud cloud_of(const Variant& variant) const;
+  prescription::PointCloud cloud_of(const Variant& variant);
   // The beam's radius on the surface, mm; NaN where no ray of the rim comes there.
   double beam_radius() const;
 
