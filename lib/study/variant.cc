@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -72,11 +73,21 @@ using CloudPointer = std::shared_ptr<const prescription::PointCloud>;
 prescription::Shape shape_of_points(CloudPointer cloud, const Variant& variant, double spacing) {
   prescription::Shape shape;
   shape.kind = surface::Facets::kind;
-  shape.parameters.numbers = {{"rings", 2}, {"shape_mm", variant.shape_spacings * spacing}, {"smoothing_um", 0},
-                              {"max_edge_mm", std::numeric_limits<double>::infinity()}};
-  shape.parameters.texts = {{"points", cloud->file}, {"format", "xyz"}, {"axes", "local"}, {"interpolation", variant.interpolation}};
+  for (const numerics::Key& key : surface::Facets::keys) {
+    const std::string name(key.name);
+    if (key.kind == numerics::ValueKind::number) shape.parameters.numbers[name] = key.fallback;
+    else if (!key.choices.empty()) shape.parameters.texts[name] = numerics::words_of(key.choices).front();
+  }
+  shape.parameters.numbers["shape_mm"] = variant.shape_spacings * spacing;
+  shape.parameters.texts["points"] = cloud->file;
+  shape.parameters.texts["interpolation"] = variant.interpolation;
   shape.cloud = std::move(cloud);
   return shape;
+}
+
+std::vector<std::string> interpolations() {
+  const auto key = std::find_if(surface::Facets::keys.begin(), surface::Facets::keys.end(), [](const numerics::Key& one) { return one.name == "interpolation"; });
+  return numerics::words_of(key->choices);
 }
 
 std::string first_error(const prescription::Findings& findings) {
@@ -211,6 +222,7 @@ struct Subject::Parts {
     const auto sites = sites_over_disc(variant.arrangement, radius(variant), variant.seed);
     const auto rough = roughness(variant.noise, variant.seed);
     const std::vector<double> above = rough ? heights(*rough, sites, 0) : std::vector<double>(sites.size(), 0.0);
+    result.points.reserve(sites.size());
     std::visit([&](const auto& shape) {
       for (std::size_t i = 0; i < sites.size(); ++i)
         result.points.push_back({sites[i].x, sites[i].y, shape.sag(sites[i].x, sites[i].y) + above[i]});
@@ -259,6 +271,9 @@ Measured Subject::measure(const Variant& variant) {
   if (!parts.reason.empty()) return {{}, parts.reason};
   const bool is_sampled = variant.interpolation != Variant::as_prescribed;
   const bool is_nearest = variant.search == Search::nearest_vertex, is_to_tolerance = variant.tolerance_mm > 0;
+  const std::vector<std::string> known = interpolations();
+  if (is_sampled && std::find(known.begin(), known.end(), variant.interpolation) == known.end())
+    return {{}, fmt::format("there is no interpolation '{}': it is {} or {}", variant.interpolation, Variant::as_prescribed, fmt::join(known, ", "))};
   if (is_nearest && variant.interpolation != "linear") return {{}, "the nearest vertex is looked for on linear facets only"};
   if (is_to_tolerance && is_sampled) return {{}, "a tolerance is for surfaces as prescribed: between points nothing is iterated to one"};
   if (!(variant.rays >= 1)) return {{}, "there are no rays"};

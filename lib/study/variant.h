@@ -12,7 +12,8 @@
 //
 // Times. Preparation: compiling the variant's scene, all of its points (process time, for several threads may share it). Tracing: the rays
 // through the surface under study alone, in batches that stay in the second-level cache; launching them and the surfaces
-// before are not counted. Runs are repeated at least three times, short ones more often.
+// before are not counted. Runs are repeated at least three times, short ones more often. The nearest vertex is timed on as many of the rays as a quarter of a
+// second allows.
 #pragma once
 
 #include <cstdint>

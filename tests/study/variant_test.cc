@@ -186,7 +186,10 @@ TEST(Measured, SaysWhyThereIsNoRow) {
   EXPECT_EQ(subject.measure(variant).reason, "a tolerance is for surfaces as prescribed: between points nothing is iterated to one");
   EXPECT_EQ(study::measure(paper_lens(), 5, linear(4)).reason, "there is no surface 5: the system has 1 to 2");
   EXPECT_EQ(study::Subject(paper_lens(), 1, 3).measure(linear(4)).reason, "there is no field 3: the system has 0 to 0");
-  EXPECT_EQ(subject.measure(linear(0)).reason.empty(), false);
+  variant = linear(4);
+  variant.interpolation = "quintic";
+  EXPECT_EQ(subject.measure(variant).reason, "there is no interpolation 'quintic': it is analytic or c1, linear, cubic, thin_plate, multiquadric");
+  EXPECT_NE(subject.measure(linear(0)).reason.find("places"), std::string::npos) << subject.measure(linear(0)).reason;
 }
 
 // A system whose other surface is a Delaunay surface has no exact rays; that of the surface under study would not do either.
