@@ -86,7 +86,8 @@ prescription::Shape shape_of_points(CloudPointer cloud, const Variant& variant, 
 }
 
 std::vector<std::string> interpolations() {
-  const auto key = std::find_if(surface::Facets::keys.begin(), surface::Facets::keys.end(), [](const numerics::Key& one) { return one.name == "interpolation"; });
+  const auto& keys = surface::Facets::keys;
+  const auto key = std::find_if(keys.begin(), keys.end(), [](const numerics::Key& one) { return one.name == "interpolation"; });
   return numerics::words_of(key->choices);
 }
 
@@ -213,7 +214,8 @@ struct Subject::Parts {
                           rough_cloud->seed == variant.seed && rough_cloud->radius == radius(variant);
     if (is_known) return rough_cloud->cloud;
     rough_cloud.reset();
-    rough_cloud = RoughCloud{variant.arrangement, variant.noise, variant.seed, radius(variant), std::make_shared<const prescription::PointCloud>(new_cloud(variant))};
+    rough_cloud = RoughCloud{variant.arrangement, variant.noise, variant.seed, radius(variant),
+                             std::make_shared<const prescription::PointCloud>(new_cloud(variant))};
     return rough_cloud->cloud;
   }
   prescription::PointCloud new_cloud(const Variant& variant) const {
