@@ -30,7 +30,7 @@ constexpr PlotKind kinds[] = {
     {"error-time-distance", "error of the place against time", time, {"distance_rms_um", "distance, rms (µm)"}},
     {"error-density-angle", "error of the angle against density", density, {"angle_rms_arcmin", "angle, rms (arcmin)"}, "angle"},
     {"error-density-distance", "error of the place against density", density, {"distance_rms_um", "distance, rms (µm)"}, "distance"},
-    {"spot-density", "error of the spot against density", density, {"spot_rms_error_percent", "error of the spot's RMS radius, absolute (%)"}, "spot RMS"},
+    {"spot-density", "error of the spot against density", density, {"spot_rms_error_percent", "error of the spot's RMS radius, absolute (%)"}},
     {"time-density", "time per ray against density", density, time},
     {"prepare-density", "preparation against density", density, {"prepare_s", "preparation (s, all threads)"}},
     {"time-rays", "time per ray against the number of rays", rays, time}};

@@ -33,6 +33,7 @@ struct Arrangement {
   ArrangementKind kind = ArrangementKind::regular;
   double points_per_mm2 = 0;
   int rings = 0, meridians = 0;  // of the kind rings, both or none: then they stand for the density
+  bool operator==(const Arrangement&) const = default;
 };
 
 struct Site {

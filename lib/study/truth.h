@@ -8,8 +8,8 @@
 //
 // Errors: rounding of 50 digits, after which a place or a direction is stored as long double: 2^-64 of itself, 2000 times finer than
 // the doubles that are compared with it (where long double is no longer than double: the same). With `Digits::extended` the
-// arithmetic is long double's too: a rough surface of 256 waves takes 2 ms a ray in 50 digits, 30 us so, for 1e-17 mm
-// against 1e-9 mm that a study of roughness tells apart.
+// arithmetic is long double's too. That is for rough surfaces: one of 256 waves takes 2.3 ms a ray in 50 digits, .08 ms so, and phases of up
+// to 2e5 rad cost it 2e-16 of a direction (l = 1 um, 25 mm across), less at longer l.
 #pragma once
 
 #include <cstdint>

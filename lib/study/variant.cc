@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -68,14 +69,26 @@ struct View {
   }
 };
 
-prescription::Shape shape_of_points(prescription::PointCloud cloud, const Variant& variant, double spacing) {
+using CloudPointer = std::shared_ptr<const prescription::PointCloud>;
+prescription::Shape shape_of_points(CloudPointer cloud, const Variant& variant, double spacing) {
   prescription::Shape shape;
   shape.kind = surface::Facets::kind;
-  shape.parameters.numbers = {{"rings", 2}, {"shape_mm", variant.shape_spacings * spacing}, {"smoothing_um", 0},
-                              {"max_edge_mm", std::numeric_limits<double>::infinity()}};
-  shape.parameters.texts = {{"points", cloud.file}, {"format", "xyz"}, {"axes", "local"}, {"interpolation", variant.interpolation}};
-  shape.cloud = std::make_shared<const prescription::PointCloud>(std::move(cloud));
+  for (const numerics::Key& key : surface::Facets::keys) {
+    const std::string name(key.name);
+    if (key.kind == numerics::ValueKind::number) shape.parameters.numbers[name] = key.fallback;
+    else if (!key.choices.empty()) shape.parameters.texts[name] = numerics::words_of(key.choices).front();
+  }
+  shape.parameters.numbers["shape_mm"] = variant.shape_spacings * spacing;
+  shape.parameters.texts["points"] = cloud->file;
+  shape.parameters.texts["interpolation"] = variant.interpolation;
+  shape.cloud = std::move(cloud);
   return shape;
+}
+
+std::vector<std::string> interpolations() {
+  const auto& keys = surface::Facets::keys;
+  const auto key = std::find_if(keys.begin(), keys.end(), [](const numerics::Key& one) { return one.name == "interpolation"; });
+  return numerics::words_of(key->choices);
 }
 
 std::string first_error(const prescription::Findings& findings) {
@@ -161,6 +174,15 @@ struct Truth {
   TrueRaysResult rays;
 };
 
+// A rough cloud takes as long to make as to triangulate.
+struct RoughCloud {
+  Arrangement arrangement;
+  Noise noise;
+  std::uint64_t seed = 0;
+  double radius = 0;
+  CloudPointer cloud;
+};
+
 }  // namespace
 
 struct Subject::Parts {
@@ -171,6 +193,7 @@ struct Subject::Parts {
   std::string reason;
   double beam_radius = nan;
   std::optional<Truth> truth;
+  std::optional<RoughCloud> rough_cloud;
   std::optional<analysis::WavefrontResult> wavefront;
 
   View view(const scene::Scene& of) const { return {of, of.fields[field], number}; }
@@ -185,12 +208,23 @@ struct Subject::Parts {
     if (!(noise.rms_um > 0)) return std::nullopt;
     return Roughness(noise.rms_um * 1e-3, noise.correlation_length_um * 1e-3, seed);
   }
-  prescription::PointCloud cloud(const Variant& variant) const {
+  CloudPointer cloud(const Variant& variant) {
+    if (!(variant.noise.rms_um > 0)) return std::make_shared<const prescription::PointCloud>(new_cloud(variant));
+    const bool is_known = rough_cloud && rough_cloud->arrangement == variant.arrangement && rough_cloud->noise == variant.noise &&
+                          rough_cloud->seed == variant.seed && rough_cloud->radius == radius(variant);
+    if (is_known) return rough_cloud->cloud;
+    rough_cloud.reset();
+    rough_cloud = RoughCloud{variant.arrangement, variant.noise, variant.seed, radius(variant),
+                             std::make_shared<const prescription::PointCloud>(new_cloud(variant))};
+    return rough_cloud->cloud;
+  }
+  prescription::PointCloud new_cloud(const Variant& variant) const {
     prescription::PointCloud result;
     result.file = fmt::format("{} points", name_of(variant.arrangement.kind));
     const auto sites = sites_over_disc(variant.arrangement, radius(variant), variant.seed);
     const auto rough = roughness(variant.noise, variant.seed);
     const std::vector<double> above = rough ? heights(*rough, sites, 0) : std::vector<double>(sites.size(), 0.0);
+    result.points.reserve(sites.size());
     std::visit([&](const auto& shape) {
       for (std::size_t i = 0; i < sites.size(); ++i)
         result.points.push_back({sites[i].x, sites[i].y, shape.sag(sites[i].x, sites[i].y) + above[i]});
@@ -212,7 +246,7 @@ struct Subject::Parts {
 };
 
 Subject::Subject(prescription::Model system, int surface_number, std::size_t field)
-    : parts_(new Parts{std::move(system), surface_number, field, {}, {}, nan, {}, {}}) {
+    : parts_(new Parts{std::move(system), surface_number, field, {}, {}, nan, {}, {}, {}}) {
   Parts& parts = *parts_;
   scene::CompileResult compiled = scene::compile(parts.model);
   if (!compiled.scene) parts.reason = first_error(compiled.findings);
@@ -234,8 +268,8 @@ void Subject::know_truth(const Variant& variant, int thread_count) {
   if (parts_->reason.empty() && variant.rays >= 1) parts_->truth_of(variant, thread_count);
 }
 
-prescription::PointCloud Subject::cloud_of(const Variant& variant) const {
-  return parts_->reason.empty() && variant.interpolation != Variant::as_prescribed ? parts_->cloud(variant) : prescription::PointCloud{};
+prescription::PointCloud Subject::cloud_of(const Variant& variant) {
+  return parts_->reason.empty() && variant.interpolation != Variant::as_prescribed ? *parts_->cloud(variant) : prescription::PointCloud{};
 }
 
 Measured Subject::measure(const Variant& variant) {
@@ -243,6 +277,9 @@ Measured Subject::measure(const Variant& variant) {
   if (!parts.reason.empty()) return {{}, parts.reason};
   const bool is_sampled = variant.interpolation != Variant::as_prescribed;
   const bool is_nearest = variant.search == Search::nearest_vertex, is_to_tolerance = variant.tolerance_mm > 0;
+  const std::vector<std::string> known = interpolations();
+  if (is_sampled && std::find(known.begin(), known.end(), variant.interpolation) == known.end())
+    return {{}, fmt::format("there is no interpolation '{}': it is {} or {}", variant.interpolation, Variant::as_prescribed, fmt::join(known, ", "))};
   if (is_nearest && variant.interpolation != "linear") return {{}, "the nearest vertex is looked for on linear facets only"};
   if (is_to_tolerance && is_sampled) return {{}, "a tolerance is for surfaces as prescribed: between points nothing is iterated to one"};
   if (!(variant.rays >= 1)) return {{}, "there are no rays"};
@@ -252,9 +289,9 @@ Measured Subject::measure(const Variant& variant) {
   Row row;
   prescription::Model model = parts.model;
   if (is_sampled) {
-    prescription::PointCloud cloud = parts.cloud(variant);
+    CloudPointer cloud = parts.cloud(variant);
     row.cloud_radius_mm = parts.radius(variant);
-    row.points = static_cast<std::int64_t>(cloud.points.size());
+    row.points = static_cast<std::int64_t>(cloud->points.size());
     row.points_per_mm2 = static_cast<double>(row.points) / (std::numbers::pi * row.cloud_radius_mm * row.cloud_radius_mm);
     model.surfaces[at(parts.number)].shape = shape_of_points(std::move(cloud), variant, parts.spacing(variant));
   }

@@ -12,7 +12,8 @@
 //
 // Times. Preparation: compiling the variant's scene, all of its points (process time, for several threads may share it). Tracing: the rays
 // through the surface under study alone, in batches that stay in the second-level cache; launching them and the surfaces
-// before are not counted. Runs are repeated at least three times, short ones more often.
+// before are not counted. Runs are repeated at least three times, short ones more often. The nearest vertex is timed on as many of the rays as a quarter of a
+// second allows.
 #pragma once
 
 #include <cstdint>
@@ -76,8 +77,8 @@ struct Measured {
   std::string reason;  // why there is none
 };
 
-// A system and its surface under study. Keeps the truth of the last variant: variants that share it (noise, seed, pattern, rays) are best
-// measured one after the other.
+// A system and its surface under study. Keeps the truth and the rough cloud of the last variant: variants that share them (noise, seed, and pattern and
+// rays or arrangement) are best measured one after the other.
 class Subject {
  public:
   // The field counts from 0, the surface from 1; the wavelength is the primary one.
@@ -89,7 +90,7 @@ class Subject {
   // The exact rays of a variant beforehand, by so many threads (0: as many as the machine runs): a process that is forked from this one has them.
   void know_truth(const Variant& variant, int thread_count);
   // The points of a variant, as a cloud in memory; empty where there are none, or measure() has a reason.
-  prescription::PointCloud cloud_of(const Variant& variant) const;
+  prescription::PointCloud cloud_of(const Variant& variant);
   // The beam's radius on the surface, mm; NaN where no ray of the rim comes there.
   double beam_radius() const;
 

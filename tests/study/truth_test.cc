@@ -142,10 +142,24 @@ TEST(TrueRays, MeetARoughSurface) {
     EXPECT_LT(norm(cross(normal, before) - Long(1.5) * cross(normal, ray.direction)), 2e-18L);  // n sin = n' sin, in one plane
     EXPECT_LT(norm(ray.position - extended.at_surface[i].position), 1e-17L);
     EXPECT_LT(norm(ray.direction - extended.at_surface[i].direction), 1e-17L);
+    EXPECT_EQ(rays.at_image[i].position.z, 0);  // the image plane is not rough
     farthest = std::max(farthest, static_cast<double>(norm(ray.position - bare.at_surface[i].position)));
   }
   EXPECT_GT(farthest, 5e-5);
   EXPECT_LT(farthest, 5e-4);
+}
+
+// A launched direction of doubles is not of unit length: it stands for its line.
+TEST(TrueRays, HaveDirectionsOfUnitLength) {
+  int rounded = 0;
+  for (int angle = 1; angle <= 30; ++angle) {
+    const auto compiled = checked(scene::compile(system_of({surface_of({}, 10, 1)}, 4, {static_cast<double>(angle)})));
+    const auto points = std::span(pupil).first(1);
+    const auto length = [](const Vec3<Long>& d) { return std::sqrt(dot(d, d)); };
+    rounded += std::abs(length(numerics::vec3_cast<Long>(trace::launch(compiled.scene, compiled.scene.fields.front(), 1, points).direction(0))) - 1) > 1e-17L;
+    EXPECT_LT(std::abs(length(rays_of(compiled.scene, {}, points).at_image.front().direction) - 1), 3e-19L) << angle;
+  }
+  EXPECT_GT(rounded, 5);
 }
 
 TEST(TrueRays, AreTheSameOnAnyNumberOfThreads) {

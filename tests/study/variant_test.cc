@@ -68,6 +68,9 @@ TEST(Measured, SurfaceAsPrescribedIsOffByRoundingAlone) {
   EXPECT_GT(row.surface.distance_um.max, 0);  // as nothing that is compared with itself
   EXPECT_EQ(row.wavefront_rms_waves, 0);
   EXPECT_EQ(row.points, 0);
+  variant.most_compared = 300;
+  EXPECT_EQ(row_of(subject, variant).compared, 300);
+  EXPECT_EQ(row_of(subject, variant).rays, 4000);
 }
 
 TEST(Measured, ErrorsAreTheSameFromTheKeptTruthAndOnTwoThreads) {
@@ -102,8 +105,32 @@ TEST(Measured, RoughnessCountsAgainstTheCleanSurface) {
   EXPECT_NEAR(clean.surface.distance_um.rms, 2, .6);
   EXPECT_TRUE(std::isnan(rough.wavefront_rms_waves));
   EXPECT_GT(clean.wavefront_rms_waves, 0);
+  noisy.rays = 500;
+  EXPECT_EQ(row_of(subject, noisy).surface.found.by_both, 500);
   noisy.seed = 2;
-  EXPECT_NE(row_of(subject, noisy).surface.distance_um.mean, rough.surface.distance_um.mean);
+  const Row other_seed = row_of(subject, noisy);
+  EXPECT_NE(other_seed.surface.distance_um.mean, rough.surface.distance_um.mean);
+  EXPECT_NEAR(other_seed.surface.distance_um.mean / smooth.surface.distance_um.mean, 1, .15);  // against its own surface; 500 rays
+}
+
+// The stop behind the surface: its image, the entrance pupil, depends on the curvature at the vertex, and a rough cloud has another one. Launched
+// by that, rays would come to places some 1e-3 of 12 mm away.
+TEST(Measured, BothSidesAreLaunchedByTheSystemAsPrescribed) {
+  auto model = paper_lens();
+  model.surfaces.front().stop = false;
+  model.surfaces.front().thickness_mm = 20;
+  model.surfaces.insert(model.surfaces.begin() + 1, surface_of({}, 140, 1.64134164));
+  model.surfaces[1].stop = true;
+  model.aperture.kind = prescription::ApertureKind::stop_diameter_mm;
+  study::Subject subject(model, 1);
+  Variant noisy = linear(16);
+  noisy.rays = 1000;
+  const Row smooth = row_of(subject, noisy);
+  noisy.noise = {2, 4000};
+  EXPECT_NEAR(row_of(subject, noisy).surface.distance_um.mean / smooth.surface.distance_um.mean, 1, .1);
+  noisy.is_against_clean = true;
+  // To the sphere through the same exit pupil: the wavefront is off by (n - 1) times the roughness, with its tilt left out at most so.
+  EXPECT_LT(row_of(subject, noisy).wavefront_rms_without_tilt_waves, 1.5 * .64 * 2 / .855);
 }
 
 TEST(Measured, NearestVertexLosesRaysOfRandomPoints) {
@@ -159,7 +186,10 @@ TEST(Measured, SaysWhyThereIsNoRow) {
   EXPECT_EQ(subject.measure(variant).reason, "a tolerance is for surfaces as prescribed: between points nothing is iterated to one");
   EXPECT_EQ(study::measure(paper_lens(), 5, linear(4)).reason, "there is no surface 5: the system has 1 to 2");
   EXPECT_EQ(study::Subject(paper_lens(), 1, 3).measure(linear(4)).reason, "there is no field 3: the system has 0 to 0");
-  EXPECT_EQ(subject.measure(linear(0)).reason.empty(), false);
+  variant = linear(4);
+  variant.interpolation = "quintic";
+  EXPECT_EQ(subject.measure(variant).reason, "there is no interpolation 'quintic': it is analytic or c1, linear, cubic, thin_plate, multiquadric");
+  EXPECT_NE(subject.measure(linear(0)).reason.find("places"), std::string::npos) << subject.measure(linear(0)).reason;
 }
 
 // A system whose other surface is a Delaunay surface has no exact rays; that of the surface under study would not do either.
