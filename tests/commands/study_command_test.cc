@@ -174,7 +174,7 @@ TEST(StudyCommand, says_what_is_wrong_and_writes_nothing) {
   const Folder folder;
   const Outcome wrong = run_study(folder, "variants:\n  - {points_per_mm2: 4, interpolation: c2}\n");
   EXPECT_EQ(wrong.status, 1);
-  EXPECT_THAT(wrong.err, HasSubstr("study.yaml:8:43: error: interpolation must be one of"));
+  EXPECT_THAT(wrong.err, HasSubstr("study.yaml:8:40: error: interpolation must be one of"));
   EXPECT_THAT(wrong.err, HasSubstr("hint: did you mean 'c1'?"));
   EXPECT_FALSE(fs::exists(folder.path("out")));
   const Outcome unknown = run_program("study lense -o '" + folder.path("out") + "'");
