@@ -59,6 +59,22 @@ TEST(Progress, ATerminalSeesTheLineAndThenNothingOfIt) {
   EXPECT_EQ(terminal.text(), "\r             \r");
 }
 
+// Half of the work in 50 ms and more leaves that time again: rounded up, a second; unknown before the first step.
+TEST(Progress, TimeLeftIsThatOfTheStepsSoFar) {
+  const Terminal terminal;
+  if (!terminal.open()) GTEST_SKIP() << "no pseudo terminal here";
+  {
+    Progress progress("study", 200, {terminal.descriptor(), milliseconds(0), milliseconds(0), true});
+    progress.advance(0);
+    EXPECT_EQ(terminal.text(), "\rstudy  0 %");
+    std::this_thread::sleep_for(milliseconds(50));
+    progress.advance(100);
+    EXPECT_THAT(terminal.text(), HasSubstr("\rstudy  50 %, 1 s left"));
+    std::this_thread::sleep_for(milliseconds(1));
+  }
+  EXPECT_THAT(terminal.text(), EndsWith("\r"));
+}
+
 TEST(Progress, ShortWorkShowsNothing) {
   const Terminal terminal;
   if (!terminal.open()) GTEST_SKIP() << "no pseudo terminal here";
