@@ -252,9 +252,8 @@ struct Zernike {
     const T eps = std::numeric_limits<T>::epsilon();
     const T c(base.curvature), one_plus_K = T(1) + T(base.conic_constant), t = before.t;
     const T x = origin.x + t * d.x, y = origin.y + t * d.y, z = origin.z + t * d.z, w = z - p.value;
-    const T G = T(1) - one_plus_K * c * w, per_G = T(1) / G;
+    const T G = T(1) - one_plus_K * c * w;
     const T g = w - T(0.5) * c * (x * x + y * y + one_plus_K * w * w);
-    const T n_x = c * x + G * p.along_x, n_y = c * y + G * p.along_y;
     const T w_t = d.z - p.along_x * d.x - p.along_y * d.y;
     const T along = G * w_t - c * (x * d.x + y * d.y), forward = negate_where<T>(d.z < T(0), along);
     const T step = -g / along, next = t + step;
@@ -264,6 +263,7 @@ struct Zernike {
     const auto at_rounding = abs(g) <= eps * G * (abs(z) + abs(p.value) + T(coefficient_sum));
     const auto ends = at_rounding | is_last;
     const auto is_on_sheet = (G > T(0)) & (forward > T(0));  // false for NaN
+    const T per_G = T(1) / (G - one_plus_K * c * (w_t * step));  // behind the step: the last one may be long along z
     const auto goes = before.state == T(Approach<T>::going);
     auto sound = is_on_sheet, in_bracket = is_on_sheet;
     if (!is_first) {
@@ -272,8 +272,8 @@ struct Zernike {
     }
     const T arrived(Approach<T>::arrived), given_up(Approach<T>::given_up), going(Approach<T>::going);
     const T after = select<T>(sound & ends, arrived, select<T>(sound & in_bracket, going, given_up));
-    return {select<T>(goes & !at_rounding, next, t), t, g, select<T>(goes, n_x * per_G, before.slope_x),
-            select<T>(goes, n_y * per_G, before.slope_y), select<T>(goes, after, before.state)};
+    return {select<T>(goes & !at_rounding, next, t), t, g, select<T>(goes, c * x * per_G + p.along_x, before.slope_x),
+            select<T>(goes, c * y * per_G + p.along_y, before.slope_y), select<T>(goes, after, before.state)};
   }
 };
 

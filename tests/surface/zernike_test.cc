@@ -197,6 +197,25 @@ TEST(ZernikeSurface, wild_surface_ends_in_a_hit_on_it_or_in_a_status) {
 
 // Beside the equator of the base conic the slope grows without bound: a step of Newton's method that is short only because
 // of that has not found a hit. Conics moved along z by up to 0.3 mm, and lines that meet the base beside its rim.
+// A ray along z leaves (x, y) where it is, so its last step may be long: the slopes are those behind it. Their rounding: some 30 operations on terms
+// of the size of the slope, 0.3, and of the sum of the terms' slopes, less.
+TEST(ZernikeSurface, slopes_are_right_to_rounding_for_rays_near_the_axis) {
+  using Fifty = boost::multiprecision::number<boost::multiprecision::cpp_dec_float<50>, boost::multiprecision::et_off>;
+  numerics::Arena arena;
+  const Zernike surface = make({7.72, -.26, 3, "osa", {{3, .31}, {5, -2.13}, {7, -.35}, {12, .13}, {17, .02}}}, arena);
+  std::mt19937_64 engine(4);
+  std::uniform_real_distribution<double> u(-2, 2);
+  for (const double tilt : {0.0, 1e-12, 1e-9, 1e-6, 1e-3, .1})
+    for (int i = 0; i < 200; ++i) {
+      const Vec3<double> p{u(engine), u(engine), -1}, d = numerics::normalized(Vec3<double>{tilt * u(engine), tilt * u(engine), 1});
+      const auto crossing = surface.meet(p, d);
+      const auto exact = surface.meet(numerics::vec3_cast<Fifty>(p), numerics::vec3_cast<Fifty>(d));
+      ASSERT_EQ(crossing.status, Status::ok);
+      EXPECT_NEAR(crossing.normal.x / crossing.normal.z, static_cast<double>(Fifty(exact.normal.x / exact.normal.z)), 30 * .3 * 1.2e-16) << tilt;
+      EXPECT_NEAR(crossing.normal.y / crossing.normal.z, static_cast<double>(Fifty(exact.normal.y / exact.normal.z)), 30 * .3 * 1.2e-16) << tilt;
+    }
+}
+
 TEST(ZernikeSurface, a_line_that_passes_the_rim_of_the_base_conic_finds_no_hit) {
   std::mt19937_64 engine(1);
   const auto u = [&](double low, double high) { return low + (high - low) * static_cast<double>(engine() >> 11) * 0x1p-53; };
