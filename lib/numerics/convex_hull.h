@@ -2,7 +2,7 @@
 // The convex hull of points that come one by one, in bounded memory for the clouds that occur.
 //
 // New points wait in a list; when it is full, the list and the hull so far become the new hull. Most points are dropped at
-// sight, for they lie inside the hull: inside a circle in it; inside the octagon of some of its vertices; or, of the wedges
+// sight, for they lie inside the hull: inside a circle in it; inside an octagon of points on its edges; or, of the wedges
 // about the circle's centre into which the plane is cut, inside the chord of their own, from where one of the wedge's sides
 // meets the hull to where the other does. 1024 wedges leave a strip of some millionths of the hull's size.
 //

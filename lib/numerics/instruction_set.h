@@ -82,8 +82,9 @@ void with_chosen_instructions_flat(const Work& work) {
     case InstructionSet::x86_64_v3: return chosen_instructions::run_flat_for_v3(work);
     case InstructionSet::any: return chosen_instructions::run_flat_for_any(work);
   }
-#endif
+#else
   chosen_instructions::run_for_any(work);
+#endif
 }
 
 }  // namespace sagitta::numerics
