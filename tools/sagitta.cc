@@ -80,6 +80,18 @@ void add_explain(CLI::App& app, int& status) {
   command->callback([&status] { status = explain_command(options); });
 }
 
+void add_verify(CLI::App& app, int& status) {
+  static VerifyOptions options;
+  CLI::App* command = app.add_subcommand("verify", "Trace rays in double and in 50 digits, and say what rounding does to the answers");
+  command->add_option("SYSTEM", options.system, "prescription (YAML)")->required();
+  command->add_option("--rays", options.ray_count, "rays per field and wavelength, at least")->check(CLI::Range(std::int64_t{1}, std::int64_t{1000000}))->capture_default_str();
+  command->add_option("--position-mm", options.position_tolerance_mm, "what a place in the image may be off by, mm")->check(from_to(0, 1e300))->capture_default_str();
+  command->add_option("--opd-waves", options.opd_tolerance_waves, "what a wavefront may be off by, waves")->check(from_to(0, 1e300))->capture_default_str();
+  command->add_option("--threads", options.thread_count, "threads (default: as many as the machine runs)")->check(CLI::Range(1, 1024));
+  command->add_flag("--json", options.json, "print JSON in place of the tables");
+  command->callback([&status] { status = verify_command(options); });
+}
+
 void add_compare(CLI::App& app, int& status) {
   static CompareOptions options;
   CLI::App* command = app.add_subcommand("compare", "Trace several systems by the rays of the first, and show what differs");
@@ -200,6 +212,7 @@ int main(int argc, char** argv) {
   int status = 0;
   add_trace(app, status);
   add_explain(app, status);
+  add_verify(app, status);
   add_compare(app, status);
   add_rays(app, status);
   add_check(app, status);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "lib/analysis/reference_sphere.h"
 #include "lib/numerics/sum.h"
 #include "lib/scene/first_order.h"
 #include "lib/trace/launch.h"
@@ -15,45 +16,11 @@
 namespace sagitta::analysis {
 namespace {
 
-using numerics::cross;
-using numerics::dot;
-using numerics::Vec3;
 using surface::Status;
 using trace::RayBatch;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double largest_radius = 1e8;     // mm; beyond it the reference sphere is a plane
 constexpr double afocal_distance = 1e8;    // mm; a paraxial image farther away than this is none
-
-// The chief ray at the image surface. A central obscuration does not stop it.
-RayBatch trace_chief(const scene::Scene& scene, const scene::Wavelength& wavelength, const scene::Field& field) {
-  scene::Scene open = scene;
-  for (scene::Surface& surface : open.surfaces) surface.inner_semi_diameter = 0;
-  RayBatch chief = launch(scene, field, wavelength.index.front(), std::vector<trace::PupilPoint>{{0, 0}});
-  trace::trace(open, wavelength, chief);
-  return chief;
-}
-
-struct ReferenceSphere {
-  Vec3<double> centre;  // Q, in the image surface's frame
-  double radius;        // R
-  double opl_chief;     // from the batches' common origin to Q
-  double index;         // n'
-};
-
-// (3), in mm; NaN where the ray does not meet the sphere.
-double optical_path_difference(const ReferenceSphere& sphere, const RayBatch& rays, std::size_t ray) {
-  const Vec3<double> p = rays.position(ray) - sphere.centre, d = rays.direction(ray);
-  const double b = dot(p, d);
-  double from_plane = 0;
-  if (std::abs(sphere.radius) <= largest_radius) {
-    const Vec3<double> off = cross(p, d);
-    const double h = dot(off, off);
-    from_plane = h / (std::abs(sphere.radius) + std::sqrt(sphere.radius * sphere.radius - h));
-    if (sphere.radius < 0) from_plane = -from_plane;
-  }
-  return (sphere.opl_chief - rays.opl[ray]) + sphere.index * (b + from_plane);
-}
 
 std::vector<trace::PupilPoint> grid_points(int size, std::vector<std::uint32_t>& mask) {
   std::vector<trace::PupilPoint> points;
@@ -86,28 +53,26 @@ void measure(Wavefront& result, const std::vector<Sample>& samples, double wavel
   result.zernike = fitter.fit(samples);
 }
 
-// Where the chief ray meets the image surface, and the sphere about that point; a reason where there is none.
-struct ReferenceResult {
-  ReferenceSphere sphere;
-  std::string reason;
-};
+}  // namespace
+
+scene::Scene without_obscurations(scene::Scene scene) {
+  for (scene::Surface& surface : scene.surfaces) surface.inner_semi_diameter = 0;
+  return scene;
+}
 
 ReferenceResult reference_sphere(const scene::Scene& scene, const scene::Wavelength& wavelength, const scene::Field& field) {
   const scene::FirstOrder paraxial = first_order(scene, wavelength, nan);
-  const int image = scene.surface_count();
-  if (!(std::abs(paraxial.image_z) <= afocal_distance)) return {{}, "the image is afocal"};
-  const RayBatch chief = trace_chief(scene, wavelength, field);
+  const double exit_pupil_z = paraxial.exit_pupil.z;
+  if (!(std::abs(paraxial.image_z) <= afocal_distance)) return {{}, exit_pupil_z, "the image is afocal"};
+  RayBatch chief = launch(scene, field, wavelength.index.front(), std::vector<trace::PupilPoint>{{0, 0}});
+  trace::trace(without_obscurations(scene), wavelength, chief);
   if (chief.ended[0] != 0)
-    return {{}, fmt::format("the chief ray is lost: {} at surface {}",
-                            surface::status_names[static_cast<std::size_t>(chief.status(0))], chief.ended_at(0))};
-  ReferenceSphere sphere{chief.position(0), 0, chief.opl[0], wavelength.index[static_cast<std::size_t>(image - 1)]};
-  sphere.radius = (paraxial.exit_pupil.z - trace::global_position(scene, image, chief, 0).z) /
-                  trace::global_direction(scene, image, chief, 0).z;
-  if (!(sphere.radius != 0)) return {{}, "the exit pupil lies in the image: the reference sphere has no radius"};
-  return {sphere, {}};
+    return {{}, exit_pupil_z, fmt::format("the chief ray is lost: {} at surface {}",
+                                          surface::status_names[static_cast<std::size_t>(chief.status(0))], chief.ended_at(0))};
+  const auto sphere = sphere_about(scene, wavelength, exit_pupil_z, chief.position(0), chief.direction(0), chief.opl[0]);
+  if (!(sphere.radius != 0)) return {{}, exit_pupil_z, "the exit pupil lies in the image: the reference sphere has no radius"};
+  return {sphere, exit_pupil_z, {}};
 }
-
-}  // namespace
 
 WavefrontResult wavefront(const scene::Scene& scene, const scene::Wavelength& wavelength, const scene::Field& field,
                           const WavefrontRequest& request) {
@@ -131,7 +96,7 @@ WavefrontResult wavefront(const scene::Scene& scene, const scene::Wavelength& wa
   for (std::size_t pixel = 0, ray = 0; pixel < result.mask.size(); ++pixel) {
     if (result.mask[pixel] == outside_pupil) continue;
     if (rays.ended[ray] == 0) {
-      const double opd_um = optical_path_difference(reference.sphere, rays, ray) * 1e3;
+      const double opd_um = optical_path_difference(reference.sphere, rays.position(ray), rays.direction(ray), rays.opl[ray]) * 1e3;
       if (std::isfinite(opd_um)) {
         samples.push_back({points[ray].x, points[ray].y, opd_um});
         result.opd_waves[pixel] = opd_um / wavelength.wavelength_um;

@@ -24,6 +24,7 @@
 #include <string>
 #include <vector>
 
+#include "lib/analysis/reference_sphere.h"
 #include "lib/analysis/zernike_fit.h"
 #include "lib/scene/scene.h"
 #include "lib/trace/ray_batch.h"
@@ -57,6 +58,17 @@ struct WavefrontResult {
 
 WavefrontResult wavefront(const scene::Scene& scene, const scene::Wavelength& wavelength, const scene::Field& field,
                           const WavefrontRequest& request);
+
+// The sphere alone; a reason where there is none.
+struct ReferenceResult {
+  ReferenceSphere<double> sphere;
+  double exit_pupil_z = 0;  // global
+  std::string reason;
+};
+ReferenceResult reference_sphere(const scene::Scene& scene, const scene::Wavelength& wavelength, const scene::Field& field);
+
+// As the chief ray sees the scene: a central obscuration does not stop it.
+scene::Scene without_obscurations(scene::Scene scene);
 // The same with a fitter of the request's terms that others have used before.
 WavefrontResult wavefront(const scene::Scene& scene, const scene::Wavelength& wavelength, const scene::Field& field,
                           const WavefrontRequest& request, ZernikeFitter& fitter);

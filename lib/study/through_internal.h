@@ -17,6 +17,7 @@ template <class T>
 struct Path {
   Vec3<T> position, direction;
   std::int32_t ended = 0;  // as in trace::RayBatch
+  T opl{};                 // likewise
 };
 
 template <class T>
@@ -31,7 +32,7 @@ template <class T, class Meet>
 Path<T> through(const scene::Surface& surface, int number, double index_before, double index_after, const Path<T>& ray, const Meet& meet) {
   if (ray.ended != 0) return ray;
   const numerics::RigidTransform<T> local_from_previous = transform_cast<T>(surface.local_from_previous);
-  Path<T> result{local_from_previous * ray.position, local_from_previous.rotation * ray.direction, 0};
+  Path<T> result{local_from_previous * ray.position, local_from_previous.rotation * ray.direction, 0, ray.opl};
   const surface::Crossing<T> crossing = meet(result.position, result.direction);
   const auto end = [&](Status status) {
     result.ended = trace::ending(number, status);
@@ -39,6 +40,7 @@ Path<T> through(const scene::Surface& surface, int number, double index_before, 
   };
   if (crossing.status != Status::ok) return end(crossing.status);
   result.position = crossing.point;
+  result.opl += T(index_before) * crossing.path;
   const T r_squared = crossing.point.x * crossing.point.x + crossing.point.y * crossing.point.y;
   const T outer(surface.semi_diameter), inner(surface.inner_semi_diameter);
   if (!(r_squared <= outer * outer) || r_squared < inner * inner) return end(Status::clipped);

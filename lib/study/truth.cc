@@ -3,20 +3,16 @@
 
 #include <fmt/format.h>
 
-#include <boost/multiprecision/cpp_bin_float.hpp>
-
 #include <algorithm>
 #include <type_traits>
 #include <variant>
 
 #include "lib/numerics/parallel.h"
+#include "lib/study/fifty_digits_internal.h"
 #include "lib/study/through_internal.h"
 
 namespace sagitta::study {
 namespace {
-
-// Without expression templates: the templates of surface/ name the type of what they compute.
-using FiftyDigits = boost::multiprecision::number<boost::multiprecision::cpp_bin_float_50::backend_type, boost::multiprecision::et_off>;
 
 template <class S>
 inline constexpr bool is_analytic = std::is_same_v<S, surface::Plane> || std::is_same_v<S, surface::Sphere> ||

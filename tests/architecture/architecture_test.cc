@@ -66,7 +66,7 @@ const std::map<std::string, std::set<std::string>> layers{
     {"lib/trace", {"lib/numerics", "lib/surface", "lib/scene"}},
     {"lib/analysis", {"lib/numerics", "lib/surface", "lib/scene", "lib/trace"}},
     {"lib/study", {"lib/numerics", "lib/medium", "lib/surface", "lib/prescription", "lib/scene", "lib/trace", "lib/analysis"}},
-    {"lib/output", {"lib/numerics", "lib/surface", "lib/scene", "lib/trace", "lib/analysis"}}};
+    {"lib/output", {"lib/numerics", "lib/surface", "lib/scene", "lib/trace", "lib/analysis", "lib/study"}}};
 
 // The bridge from the model to the scene: these files of lib/scene alone know the prescription.
 bool is_bridge(const std::string& path) {

@@ -1,0 +1,326 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lib/study/rounding.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <variant>
+
+#include "lib/analysis/wavefront.h"
+#include "lib/numerics/parallel.h"
+#include "lib/study/fifty_digits_internal.h"
+#include "lib/study/through_internal.h"
+#include "lib/trace/launch_rays.h"
+#include "lib/trace/pattern.h"
+#include "lib/trace/trace.h"
+
+namespace sagitta::study {
+namespace {
+
+using Exact = FiftyDigits;
+using ExactRay = Path<Exact>;
+using analysis::ReferenceSphere;
+
+double size_of(const Exact& value) { return std::abs(static_cast<double>(value)); }
+double size_of(const Vec3<Exact>& value) { return static_cast<double>(norm(value)); }
+
+const surface::Facets* facets_in(const surface::Shape& shape) {
+  return std::visit([]<class S>(const S& of) -> const surface::Facets* {
+    if constexpr (std::is_same_v<S, surface::Facets>) return &of;
+    else if constexpr (requires { of.facets; }) return &of.facets;
+    else return nullptr;
+  }, shape);
+}
+
+// A scene at one of its wavelengths, as exact rays see it.
+struct View {
+  const scene::Scene& scene;
+  const scene::Wavelength& wavelength;
+
+  int surface_count() const { return scene.surface_count(); }
+  double index_before(int number) const { return wavelength.index[static_cast<std::size_t>(number - 1)]; }
+  double index_behind(int number) const { return wavelength.index[static_cast<std::size_t>(number)]; }
+  bool is_dummy(int number) const { return scene.surface(number).does_nothing(index_before(number), index_behind(number)); }
+
+  surface::Crossing<Exact> meet(int number, const Vec3<Exact>& p, const Vec3<Exact>& d) const {
+    return std::visit([&](const auto& shape) -> surface::Crossing<Exact> { return shape.meet(p, d); }, scene.surface(number).shape);
+  }
+  ExactRay step(int number, const ExactRay& ray) const {
+    return through(scene.surface(number), number, index_before(number), index_behind(number), ray,
+                   [&](const Vec3<Exact>& p, const Vec3<Exact>& d) { return meet(number, p, d); });
+  }
+  ExactRay to_image(int behind, ExactRay ray) const {
+    for (int number = behind + 1; number <= surface_count(); ++number) ray = step(number, ray);
+    return ray;
+  }
+};
+
+// The tracer's rays: launched, then behind every surface.
+std::vector<trace::RayBatch> tracer_states(const View& view, trace::RayBatch launched) {
+  std::vector<trace::RayBatch> states{launched};
+  trace::SurfaceBySurface tracer(view.scene, view.wavelength, std::move(launched));
+  for (int number = 1; number <= view.surface_count(); ++number) states.push_back(tracer.next());
+  return states;
+}
+
+std::vector<ExactRay> launch_exactly(const View& view, const scene::Field& field, std::span<const trace::PupilPoint> pupil) {
+  std::vector<ExactRay> rays(pupil.size());
+  trace::launch_rays<Exact>(view.scene, field, view.wavelength.index.front(), pupil,
+                            [&](std::size_t i, const Vec3<Exact>& position, const Vec3<Exact>& direction, const Exact& opl) { rays[i] = {position, direction, 0, opl}; });
+  return rays;
+}
+
+// Its length is the tracer's error too, and stays with the step that made it.
+ExactRay as_exact(const trace::RayBatch& state, std::size_t i) {
+  return {numerics::vec3_cast<Exact>(state.position(i)), numerics::normalized(numerics::vec3_cast<Exact>(state.direction(i))), state.ended[i], Exact(state.opl[i])};
+}
+
+struct Differences {
+  double position = 0, direction = 0, opl = 0;
+};
+Differences differences(const ExactRay& ray, const ExactRay& truth) {
+  return {size_of(ray.position - truth.position), size_of(ray.direction - truth.direction), size_of(ray.opl - truth.opl)};
+}
+
+// One ray in both ways.
+struct Track {
+  std::int32_t ended = 0, exact_ended = 0;
+  std::vector<Differences> errors, own;  // [0] the launch, [k] surface k, as far as the ray comes
+  std::vector<ExactRay> in_image;        // X_k, where both arrive
+  ExactRay exact_in_image;
+  double rim_distance = std::numeric_limits<double>::infinity();  // of a ray that ends in one way only, from the aperture that ends it
+};
+
+// How far the exact ray is from the edge of an aperture where one of the two ended, clipped.
+double distance_from_rim(const View& view, const std::vector<ExactRay>& exact, std::int32_t ended, std::int32_t exact_ended) {
+  const std::int32_t clipped_as = ended % 8 == static_cast<int>(Status::clipped) ? ended : exact_ended;
+  if (clipped_as % 8 != static_cast<int>(Status::clipped)) return std::numeric_limits<double>::infinity();
+  const int number = clipped_as / 8;
+  const ExactRay& there = exact[static_cast<std::size_t>(number)];
+  const double radius = static_cast<double>(sqrt(Exact(there.position.x * there.position.x + there.position.y * there.position.y)));
+  const scene::Surface& surface = view.scene.surface(number);
+  return std::min(std::abs(radius - surface.semi_diameter), std::abs(radius - surface.inner_semi_diameter));
+}
+
+Track track(const View& view, const std::vector<trace::RayBatch>& states, const ExactRay& launched, std::size_t i) {
+  const int last = view.surface_count();
+  std::vector<ExactRay> exact{launched};
+  for (int number = 1; number <= last; ++number) exact.push_back(view.step(number, exact.back()));
+  Track result;
+  result.ended = states.back().ended[i];
+  result.exact_ended = exact.back().ended;
+  result.exact_in_image = exact.back();
+  if (result.ended != result.exact_ended) {
+    result.rim_distance = distance_from_rim(view, exact, result.ended, result.exact_ended);
+    return result;
+  }
+  const int comes_to = result.ended == 0 ? last : result.ended / 8 - 1;
+  ExactRay from = as_exact(states[0], i);  // where the tracer itself goes on from
+  int from_number = 0;
+  result.errors.push_back(differences(from, launched));
+  result.own.push_back(result.errors.back());
+  if (result.ended == 0) result.in_image.push_back(view.to_image(0, from));
+  for (int number = 1; number <= comes_to; ++number) {
+    const ExactRay here = as_exact(states[static_cast<std::size_t>(number)], i);
+    ExactRay expected = from;
+    for (int next = from_number + 1; next <= number; ++next) expected = view.step(next, expected);
+    result.errors.push_back(differences(here, exact[static_cast<std::size_t>(number)]));
+    result.own.push_back(differences(here, expected));
+    const bool is_passed_by = view.is_dummy(number);
+    if (!is_passed_by) from = here, from_number = number;
+    if (result.ended == 0) result.in_image.push_back(is_passed_by ? result.in_image.back() : view.to_image(number, here));
+  }
+  return result;
+}
+
+// The rays of one field and wavelength, the chief ray apart: a central obscuration does not stop it.
+struct Bundle {
+  std::size_t field, wavelength;
+  std::vector<trace::PupilPoint> pupil;
+  std::vector<trace::RayBatch> states;
+  std::vector<Track> tracks;
+  std::vector<ReferenceSphere<Exact>> spheres;  // of X_k
+  ReferenceSphere<Exact> exact_sphere;
+  analysis::ReferenceResult reference;          // the tracer's own
+};
+
+void know_reference(const scene::Scene& scene, Bundle& bundle) {
+  const scene::Wavelength& wavelength = scene.wavelengths[bundle.wavelength];
+  const scene::Field& field = scene.fields[bundle.field];
+  bundle.reference = analysis::reference_sphere(scene, wavelength, field);
+  if (!bundle.reference.reason.empty()) return;
+  const scene::Scene open = analysis::without_obscurations(scene);
+  const View view{open, wavelength};
+  const std::vector<trace::PupilPoint> centre{{0, 0}};
+  const Track chief = track(view, tracer_states(view, trace::launch(open, field, wavelength.index.front(), centre)), launch_exactly(view, field, centre).front(), 0);
+  if (chief.ended != 0 || chief.exact_ended != 0) {
+    bundle.reference.reason = "the exact chief ray ends otherwise than the tracer's";
+    return;
+  }
+  const auto sphere = [&](const ExactRay& ray) {
+    return analysis::sphere_about(scene, wavelength, bundle.reference.exit_pupil_z, ray.position, ray.direction, ray.opl);
+  };
+  for (const ExactRay& ray : chief.in_image) bundle.spheres.push_back(sphere(ray));
+  bundle.exact_sphere = sphere(chief.exact_in_image);
+}
+
+Exact opd_of(const ReferenceSphere<Exact>& sphere, const ExactRay& ray) { return optical_path_difference(sphere, ray.position, ray.direction, ray.opl); }
+
+// Where the worst own error of a surface was made.
+struct Worst {
+  double position = -1;
+  std::size_t wavelength = 0;
+  ExactRay before;
+};
+
+struct Factor {
+  const char* cause;
+  double factor;
+};
+
+double smallest_angle_sine(const surface::Facets& facets, const Vec3<Exact>& point) {
+  const std::uint32_t f = facets.facet_at(static_cast<double>(point.x), static_cast<double>(point.y));
+  if (f == surface::no_facet) return 1;
+  double least = 1;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto corner = [&](std::size_t k) { return facets.mesh->vertices[facets.mesh->corners[f][k % 3]]; };
+    const Vec3<double> a = corner(i + 1) - corner(i), b = corner(i + 2) - corner(i);
+    least = std::min(least, norm(cross(a, b)) / (norm(a) * norm(b)));
+  }
+  return least;
+}
+
+// By which geometry enlarges rounding at one ray's crossing.
+std::string cause_at(const View& view, int number, const ExactRay& before, double scale) {
+  const scene::Surface& surface = view.scene.surface(number);
+  const auto local = transform_cast<Exact>(surface.local_from_previous);
+  const Vec3<Exact> d = local.rotation * before.direction;
+  const surface::Crossing<Exact> crossing = view.meet(number, local * before.position, d);
+  if (crossing.status != Status::ok) return "";
+  const Exact length = norm(crossing.normal);
+  const double cosine = size_of(Exact(crossing.along / length)), steep = static_cast<double>(Exact(length / crossing.normal.z));
+  const ExactRay behind = view.step(number, before);
+  const double cosine_behind = behind.ended == 0 ? size_of(Exact(dot(behind.direction, crossing.normal) / length)) : 0;
+  const surface::Facets* facets = facets_in(surface.shape);
+  const double mu = view.index_before(number) / view.index_behind(number);
+  std::vector<Factor> factors{{"near-grazing incidence", 1 / cosine},
+                              {"near the critical angle", cosine_behind > 0 ? 1 / cosine_behind : 1},
+                              {"steep surface", std::abs(steep)},
+                              {"long distance", size_of(crossing.path) / scale},
+                              {"strong curvature", std::abs(surface.vertex_curvature) * scale},
+                              {"ill-conditioned facet", facets ? 1 / smallest_angle_sine(*facets, crossing.point) : 1},
+                              {"index ratio near 1", mu != 1 && std::abs(mu - 1) < 1e-3 ? 1.5 : 1}};
+  const auto largest = std::max_element(factors.begin(), factors.end(), [](const Factor& a, const Factor& b) { return a.factor < b.factor; });
+  return largest->factor > 1.25 ? largest->cause : "many operations";
+}
+
+class Gatherer {
+ public:
+  Gatherer(const scene::Scene& scene, const RoundingRequest& request) : scene_(scene), request_(request) {
+    result_.surfaces.resize(static_cast<std::size_t>(scene.surface_count()) + 1);
+    worst_.resize(result_.surfaces.size());
+  }
+
+  void add(const Bundle& bundle) {
+    FieldRounding field{bundle.field, bundle.wavelength, static_cast<std::int64_t>(bundle.tracks.size()), 0, {}, {}, bundle.reference.reason};
+    for (std::size_t i = 0; i < bundle.tracks.size(); ++i) {
+      const Track& one = bundle.tracks[i];
+      ++result_.rays;
+      if (one.ended != one.exact_ended) disagree(bundle, i);
+      else add_errors(bundle, i);
+      if (one.ended == 0 && one.exact_ended == 0) add_in_image(bundle, i, field);
+    }
+    result_.fields.push_back(std::move(field));
+  }
+
+  Rounding finish() {
+    for (int number = 2; number <= scene_.surface_count(); ++number)
+      result_.scale_mm = std::max(result_.scale_mm, norm(scene_.surface(number).local_from_previous.translation));
+    for (std::size_t k = 1; k < result_.surfaces.size(); ++k) {
+      SurfaceRounding& surface = result_.surfaces[k];
+      const double units = surface.own_position_mm.worst() / (0x1p-52 * result_.scale_mm);
+      surface.digits_lost = units > 1 ? std::log10(units) : 0;
+      if (surface.digits_lost >= 1)
+        surface.cause = cause_at(View{scene_, scene_.wavelengths[worst_[k].wavelength]}, static_cast<int>(k), worst_[k].before, result_.scale_mm);
+    }
+    return std::move(result_);
+  }
+
+ private:
+  void disagree(const Bundle& bundle, std::size_t i) {
+    const Track& one = bundle.tracks[i];
+    result_.disagreements.push_back({bundle.field, bundle.wavelength, bundle.pupil[i].x, bundle.pupil[i].y, static_cast<Status>(one.ended % 8),
+                                     static_cast<Status>(one.exact_ended % 8), one.ended / 8, one.exact_ended / 8, one.rim_distance <= request_.position_tolerance_mm});
+  }
+  void add_errors(const Bundle& bundle, std::size_t i) {
+    const Track& one = bundle.tracks[i];
+    const View view{scene_, scene_.wavelengths[bundle.wavelength]};
+    std::size_t from = 0;
+    for (std::size_t k = 0; k < one.errors.size(); ++k) {
+      SurfaceRounding& surface = result_.surfaces[k];
+      surface.position_mm.add(one.errors[k].position), surface.direction_rad.add(one.errors[k].direction), surface.opl_mm.add(one.errors[k].opl);
+      surface.own_position_mm.add(one.own[k].position), surface.own_direction_rad.add(one.own[k].direction), surface.own_opl_mm.add(one.own[k].opl);
+      if (k == 0) continue;
+      result_.scale_mm = std::max(result_.scale_mm, norm(bundle.states[k].position(i)));
+      const int number = static_cast<int>(k);
+      if (one.own[k].position > worst_[k].position) {
+        ExactRay before = as_exact(bundle.states[from], i);
+        for (std::size_t passed = from + 1; passed < k; ++passed) before = view.step(static_cast<int>(passed), before);
+        worst_[k] = {one.own[k].position, bundle.wavelength, before};
+      }
+      if (!view.is_dummy(number)) from = k;
+    }
+  }
+  void add_in_image(const Bundle& bundle, std::size_t i, FieldRounding& field) {
+    const Track& one = bundle.tracks[i];
+    ++field.arrived;
+    field.position_mm.add(one.errors.back().position);
+    const bool has_wavefront = bundle.reference.reason.empty();
+    const Exact per_wave = Exact(1e3) / Exact(scene_.wavelengths[bundle.wavelength].wavelength_um), exact_opd = has_wavefront ? opd_of(bundle.exact_sphere, one.exact_in_image) : Exact(0);
+    const ExactRay* before = &one.exact_in_image;
+    Exact opd_before = exact_opd;
+    for (std::size_t k = 0; k < one.in_image.size(); ++k) {
+      if (one.in_image[k].ended != 0) return;  // a ray on the edge of ending: its share has no size
+      result_.surfaces[k].share_mm.add(size_of(one.in_image[k].position - before->position));
+      before = &one.in_image[k];
+      if (!has_wavefront) continue;
+      const Exact opd = opd_of(bundle.spheres[k], one.in_image[k]);
+      result_.surfaces[k].share_waves.add(size_of(Exact((opd - opd_before) * per_wave)));
+      opd_before = opd;
+    }
+    if (!has_wavefront) return;
+    const trace::RayBatch& image = bundle.states.back();
+    const double opd = optical_path_difference(bundle.reference.sphere, image.position(i), image.direction(i), image.opl[i]);
+    if (std::isnan(opd)) return;  // it misses the reference sphere
+    result_.opd_formula_waves.add(size_of(Exact((Exact(opd) - opd_before) * per_wave)));
+    field.opd_waves.add(size_of(Exact((Exact(opd) - exact_opd) * per_wave)));
+  }
+
+  const scene::Scene& scene_;
+  const RoundingRequest& request_;
+  Rounding result_;
+  std::vector<Worst> worst_;
+};
+
+}  // namespace
+
+Rounding rounding_of(const scene::Scene& scene, const RoundingRequest& request) {
+  Gatherer gatherer(scene, request);
+  for (std::size_t field = 0; field < scene.fields.size(); ++field)
+    for (std::size_t wavelength = 0; wavelength < scene.wavelengths.size(); ++wavelength) {
+      const View view{scene, scene.wavelengths[wavelength]};
+      Bundle bundle{field, wavelength, trace::pupil_points({trace::PatternKind::hexapolar}, request.rays), {}, {}, {}, {}, {}};
+      bundle.states = tracer_states(view, trace::launch(scene, scene.fields[field], view.wavelength.index.front(), bundle.pupil));
+      const std::vector<ExactRay> launched = launch_exactly(view, scene.fields[field], bundle.pupil);
+      bundle.tracks.resize(bundle.pupil.size());
+      numerics::share_blocks(bundle.tracks.size(), request.thread_count, [&] { return [&](std::size_t i) { bundle.tracks[i] = track(view, bundle.states, launched[i], i); }; });
+      know_reference(scene, bundle);
+      gatherer.add(bundle);
+    }
+  return gatherer.finish();
+}
+
+}  // namespace sagitta::study
