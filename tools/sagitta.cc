@@ -143,11 +143,15 @@ void add_convert(CLI::App& app, int& status) {
 void add_study(CLI::App& app, int& status) {
   static StudyOptions options;
   CLI::App* command = app.add_subcommand("study", "Measure error against run time: every variant of a study, as tables, plots and a page");
-  command->add_option("STUDY", options.study, "study (YAML), or the name of one of systems/studies/")->required();
+  auto* study = command->add_option("STUDY", options.study, "study (YAML), or the name of one of systems/studies/");
+  command->add_option("--system", options.system, "in its place a prescription (YAML): how its spots and wavefronts settle with more rays, and with every interpolation of its points")->excludes(study);
   command->add_option("-o,--output", options.folder, "folder for study.csv, study.json, study.md and the plots; finished rows there are kept")->required();
-  command->add_option("--threads", options.thread_count, "threads for the exact rays, and for variants with threads: 0 (default: as many as the machine runs)")
+  command->add_option("--threads", options.thread_count, "threads for the exact rays, for variants with threads: 0, and with --system (default: as many as the machine runs)")
       ->check(CLI::Range(1, 1024));
-  command->callback([&status] { status = study_command(options); });
+  command->callback([&status] {
+    if (options.study.empty() && options.system.empty()) throw CLI::RequiredError("STUDY or --system");
+    status = study_command(options);
+  });
 }
 
 void add_fit(CLI::App& app, int& status) {

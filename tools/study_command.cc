@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// sagitta study NAME_OR_FILE -o DIR: error against run time, variant by variant.
+// sagitta study NAME_OR_FILE -o DIR: error against run time, variant by variant; with --system, of one system as it is.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,6 +16,7 @@
 #include "tools/pictures.h"
 #include "tools/study_page.h"
 #include "tools/study_run.h"
+#include "tools/study_system.h"
 #include "tools/version.h"
 #include "tools/write.h"
 
@@ -103,6 +104,7 @@ bool measure_all(const prescription::StudyFile& study, std::vector<StudyRow>& ro
 }  // namespace
 
 int study_command(const StudyOptions& options) {
+  if (!options.system.empty()) return study_system(options);
   const auto study = load_study(options.study);
   if (!study) return 1;
   if (!pictures(command)) return 1;

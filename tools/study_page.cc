@@ -7,33 +7,14 @@
 #include <cmath>
 #include <thread>
 
-#include "lib/output/text.h"
 #include "lib/prescription/study_keys.h"
+#include "tools/markdown.h"
 #include "tools/version.h"
 
 namespace sagitta::tools {
 namespace {
 
 using output::significant;
-
-// Somebody's text in a cell of a table or a line of Markdown.
-std::string plain(const std::string& text) {
-  std::string result;
-  for (const char c : output::printable(text, 10'000)) {
-    if (c == '|' || c == '<' || c == '*' || c == '`') result += '\\';
-    result += c;
-  }
-  return result;
-}
-
-std::string line_of(const std::vector<std::string>& cells) { return fmt::format("| {} |\n", fmt::join(cells, " | ")); }
-
-// Numbers stand at the right; the first column, of texts, at the left.
-std::string head_of(const std::vector<std::string>& names) {
-  std::string rule = "|---|";
-  for (std::size_t i = 1; i < names.size(); ++i) rule += "--:|";
-  return line_of(names) + rule + "\n";
-}
 
 struct PageColumn {
   const char* column;

@@ -17,6 +17,7 @@
 #include "lib/study/nearest_vertex.h"
 #include "lib/study/newton.h"
 #include "lib/study/through_internal.h"
+#include "lib/study/variant_internal.h"
 #include "lib/trace/trace.h"
 
 namespace sagitta::study {
@@ -83,18 +84,6 @@ prescription::Shape shape_of_points(CloudPointer cloud, const Variant& variant, 
   shape.parameters.texts["interpolation"] = variant.interpolation;
   shape.cloud = std::move(cloud);
   return shape;
-}
-
-std::vector<std::string> interpolations() {
-  const auto& keys = surface::Facets::keys;
-  const auto key = std::find_if(keys.begin(), keys.end(), [](const numerics::Key& one) { return one.name == "interpolation"; });
-  return numerics::words_of(key->choices);
-}
-
-std::string first_error(const prescription::Findings& findings) {
-  for (const auto& finding : findings.all())
-    if (finding.severity == prescription::Severity::error) return prescription::format(finding);
-  return "the system has no scene";
 }
 
 struct SurfaceTimes {
@@ -184,6 +173,18 @@ struct RoughCloud {
 };
 
 }  // namespace
+
+std::vector<std::string> interpolations() {
+  const auto& keys = surface::Facets::keys;
+  const auto key = std::find_if(keys.begin(), keys.end(), [](const numerics::Key& one) { return one.name == "interpolation"; });
+  return numerics::words_of(key->choices);
+}
+
+std::string first_error(const prescription::Findings& findings) {
+  for (const auto& finding : findings.all())
+    if (finding.severity == prescription::Severity::error) return prescription::format(finding);
+  return "the system has no scene";
+}
 
 struct Subject::Parts {
   prescription::Model model;
