@@ -71,7 +71,7 @@ class Rows {
 
 output::Records system_records(const SystemStudy& system) {
   output::Records records{{{"answer", true}, {"varied", true}, {"pattern", true}, {"rays"}, {"grid"}, {"surface"}, {"interpolation", true}, {"field"}, {"wavelength_nm"}, {"launched"}, {"arrived"},
-                           {"unit", true}, {"value"}, {"error"}, {"error_percent"}, {"bound"}, {"bound_percent"}, {"truth_uncertainty"}, {"processor_s"}, {"processor_least_s"}, {"processor_most_s"},
+                           {"unit", true}, {"value"}, {"error"}, {"error_percent"}, {"claim"}, {"claim_percent"}, {"truth_uncertainty"}, {"processor_s"}, {"processor_least_s"}, {"processor_most_s"},
                            {"wall_s"}, {"runs"}, {"prepare_s"}, {"reason", true}},
                           {}};
   Rows rows(records);
@@ -119,7 +119,7 @@ int study_system(const StudyOptions& options) {
   for (const SystemPlot& plot : plots) all_written = write_chart(command, folder / plot.file, plot.chart) && all_written;
   all_written = written(command, output::write_file((folder / "study.md").string(), system_page(system, plots))) && all_written;
 
-  fmt::print("{}, {} fields, {} wavelengths\n", output::printable(model->name, 200), model->fields.points.size(), model->wavelengths_nm.size());
+  fmt::print("{}: {}\n", output::printable(model->name, 200), fields_of(*model));
   for (const std::string& line : system.advice) fmt::print("{}\n", output::printable(line, 1000));
   if (!system.truth_note.empty()) fmt::print("{}\n", system.truth_note);
   const bool any_arrived = std::any_of(system.curves.begin(), system.curves.end(), [](const study::Curve& curve) { return curve.quantity == study::Quantity::spot_rms; });

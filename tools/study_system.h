@@ -25,6 +25,9 @@ struct SystemStudy {
   std::string truth_note;
 };
 
+// "3 fields, 1 wavelength".
+std::string fields_of(const prescription::Model& model);
+
 // A row for every answer, setting, field and wavelength.
 output::Records system_records(const SystemStudy& study);
 

@@ -33,7 +33,7 @@ const char* unit_of(const study::Worst& worst, Quantity quantity) { return std::
 bool has_order(const Curve& curve) { return curve.order.pairs > 3 && curve.order.standard_error < .25; }
 
 std::string series_name(const Curve& curve) {
-  return curve.pattern.empty() ? fmt::format("square grid of the pupil, {} to {} a side", curve.steps.front().run->grid, curve.steps.back().run->grid) : curve.pattern;
+  return curve.pattern.empty() ? "square grid" : curve.pattern;
 }
 
 output::ChartSeries series_of(const Curve& curve, bool is_over_time) {
@@ -80,11 +80,13 @@ SystemPlot plot_of(const SystemStudy& system, Quantity quantity, bool is_over_ti
 
 std::string cloud_name(const study::CloudRun& run) { return run.surface.empty() ? fmt::format("surface {}", run.surface_number) : run.surface; }
 
+std::string interpolation_name(const study::CloudRun& run) { return run.interpolation + (run.is_given ? ", as given" : ""); }
+
 SystemPlot plot_of_clouds(const SystemStudy& system, Quantity quantity) {
   SystemPlot plot;
   plot.file = fmt::format("{}-interpolation", file_of(quantity));
   const std::string what = quantity == Quantity::zernike ? "change of the worst Zernike coefficient" : fmt::format("change of the {}", study::name_of(quantity));
-  plot.chart.title = title_of(system, fmt::format("{} by interpolations of the points", what));
+  plot.chart.title = title_of(system, fmt::format("{} by interpolation", what));
   plot.chart.x_label = "processor time of a ray through the system (ns)";
   std::set<int> clouds;
   for (const CloudChange& change : system.changes) clouds.insert(change.run->surface_number);
@@ -92,17 +94,17 @@ SystemPlot plot_of_clouds(const SystemStudy& system, Quantity quantity) {
     const study::Worst& worst = change.change[static_cast<std::size_t>(quantity)];
     if (!(worst.main() > 0)) continue;
     plot.chart.y_label = fmt::format("{} from {}, worst field and wavelength ({})", what, change.finest->interpolation, unit_of(worst, quantity));
-    plot.chart.series.push_back({clouds.size() > 1 ? fmt::format("{} at {}", change.run->interpolation, cloud_name(*change.run)) : change.run->interpolation,
+    plot.chart.series.push_back({clouds.size() > 1 ? fmt::format("{} at {}", interpolation_name(*change.run), cloud_name(*change.run)) : interpolation_name(*change.run),
                                  {{change.run->ns_per_ray(), worst.main()}}, false, {}});
   }
+  if (clouds.size() == 1) plot.chart.references.push_back({true, system.changes.front().run->ns_per_ray(), system.changes.front().run->interpolation + ", the truth"});
   plot.chart.footer = fmt::format("all by the most rays; {}", machine_note());
   return plot;
 }
 
 std::string count_name(Quantity quantity) { return quantity == Quantity::spot_rms ? "rays" : "samples"; }
 
-std::string cell_of(const study::Worst& worst) { return std::isnan(worst.percent) ? "-" : significant(worst.percent, 2); }
-std::string absolute_cell(const study::Worst& worst) { return std::isnan(worst.absolute) ? "-" : significant(worst.absolute, 2); }
+std::string cell_of(double error) { return error == 0 ? "truth" : significant(error, 2); }
 
 // A table of one quantity: columns of percents and of the unit only where there are any.
 std::string section_of(const SystemStudy& system, Quantity quantity) {
@@ -124,8 +126,8 @@ std::string section_of(const SystemStudy& system, Quantity quantity) {
     }
     for (const Step& step : curve.steps) {
       std::vector<std::string> cells{curve.pattern.empty() ? study::text_of(*step.run) : curve.pattern, fmt::format("{:.0f}", step.count)};
-      if (has_percent) cells.insert(cells.end(), {cell_of(step.error), cell_of(step.bound)});
-      if (has_absolute) cells.insert(cells.end(), {absolute_cell(step.error), absolute_cell(step.bound)});
+      if (has_percent) cells.insert(cells.end(), {cell_of(step.error.percent), cell_of(step.bound.percent)});
+      if (has_absolute) cells.insert(cells.end(), {cell_of(step.error.absolute), cell_of(step.bound.absolute)});
       cells.insert(cells.end(), {study::text_of_seconds(step.run->processor_s.median), study::text_of_seconds(step.run->wall_s.median)});
       text += line_of(cells);
     }
@@ -144,7 +146,7 @@ std::string clouds_section(const SystemStudy& system) {
                                  "wavelengths. Where two smooth interpolations differ, the points do not tell which is right.\n\n{}", system.changes.front().run->interpolation, head_of(names));
   for (const CloudChange& change : system.changes) {
     const study::CloudRun& run = *change.run;
-    std::vector<std::string> cells{plain(cloud_name(run)), run.interpolation + (run.is_given ? ", as given" : "")};
+    std::vector<std::string> cells{plain(cloud_name(run)), interpolation_name(run)};
     if (!run.reason.empty()) {
       cells.push_back(plain(run.reason));
     } else {
@@ -181,6 +183,11 @@ std::string answers_section(const SystemStudy& system) {
 
 }  // namespace
 
+std::string fields_of(const prescription::Model& model) {
+  const std::size_t fields = model.fields.points.size(), wavelengths = model.wavelengths_nm.size();
+  return fmt::format("{} field{}, {} wavelength{}", fields, fields == 1 ? "" : "s", wavelengths, wavelengths == 1 ? "" : "s");
+}
+
 std::vector<SystemPlot> system_plots(const SystemStudy& system) {
   std::vector<SystemPlot> plots;
   for (const Quantity quantity : study::quantities) {
@@ -192,12 +199,12 @@ std::vector<SystemPlot> system_plots(const SystemStudy& system) {
 }
 
 std::string system_page(const SystemStudy& system, const std::vector<SystemPlot>& plots) {
-  std::string text = fmt::format("# {}: error against run time\n\nSystem: {}, {} fields, {} wavelengths, {} surfaces.\nMachine: {}, {} threads; sagitta {}, {}.\n\n## Advice\n\n", plain(system.model.name),
-                                 plain(system.model.file), system.model.fields.points.size(), system.model.wavelengths_nm.size(), system.model.surfaces.size(), plain(processor_name()),
+  std::string text = fmt::format("# {}: error against run time\n\nSystem: {}, {}, {} surfaces.\nMachine: {}, {} threads; sagitta {}, {}.\n\n## Advice\n\n", plain(system.model.name),
+                                 plain(system.model.file), fields_of(system.model), system.model.surfaces.size(), plain(processor_name()),
                                  std::thread::hardware_concurrency(), version(), build());
   for (const std::string& line : system.advice) text += fmt::format("- {}\n", plain(line));
   if (!system.truth_note.empty())
-    text += fmt::format("\nMind: {}.\n\nErrors are those of the worst field and wavelength, in percent of its answer, or in the answer's unit where it is next to nothing: a spot below a hundredth of the wavelength, a "
+    text += fmt::format("\n{}\n\nErrors are those of the worst field and wavelength, in percent of its answer, or in the answer's unit where it is next to nothing: a spot below a hundredth of the wavelength, a "
                         "wavefront below a thousandth of a wave. Of a Zernike coefficient the error is in µm. A claim is the largest error from there on, and what the truth may be off by. Times are processor "
                         "time, all fields, wavelengths and threads together, medians where runs are short: launching, tracing, collecting, of wavefronts the Zernike fit too. Starting, reading, drawing and "
                         "writing files come on top, whatever the number of rays. `study.csv` has every field and wavelength, with the spread of the times.\n", plain(system.truth_note));

@@ -14,9 +14,12 @@
 namespace sagitta::study {
 namespace {
 
+// Of µm or waves: beside percents, what is less is not worth saying.
+constexpr double next_to_nothing = 1e-3;
+
 // Two digits, decimal from 0.0001 to 999999.
 std::string two_digits(double value) {
-  if (!std::isfinite(value)) return "nobody knows what";
+  if (!std::isfinite(value)) return "an unknown amount";
   if (value == 0) return "0";
   const std::string scientific = fmt::format("{:.1e}", value);
   const int exponent = std::stoi(scientific.substr(scientific.find('e') + 1));
@@ -97,9 +100,9 @@ std::string line_of_patterns(std::span<const Curve> curves) {
   std::vector<std::string> words;
   for (const Curve& curve : curves) {
     const Step* step = fewest(curve, target, is_percent);
-    words.push_back(fmt::format("{}{} of {}", step ? "" : "more than ", text_of(step ? *step->run : *curve.steps.back().run), curve.pattern));
+    words.push_back(fmt::format("{}{} rays of {}", step ? "" : "more than ", text_of(step ? *step->run : *curve.steps.back().run), curve.pattern));
   }
-  return fmt::format("for {} of it: {}", target_text(first, target), fmt::join(words, ", "));
+  return fmt::format("the {} to {} takes {}", name_of(first.quantity), target_text(first, target), fmt::join(words, ", "));
 }
 
 std::string line_of(const CloudChange& change) {
@@ -125,7 +128,7 @@ std::string text_of(const Worst& worst, Quantity quantity) {
   const std::string absolute = fmt::format("{} {}", up(worst.absolute), unit_of(quantity));
   if (std::isnan(worst.percent)) return absolute;
   const std::string percent = up(worst.percent) + " %";
-  return std::isnan(worst.absolute) ? percent : fmt::format("{} ({} where it is next to nothing)", percent, absolute);
+  return worst.absolute >= next_to_nothing ? fmt::format("{} ({} where it is next to nothing)", percent, absolute) : percent;
 }
 
 std::string text_of_seconds(double seconds) {
@@ -151,15 +154,15 @@ std::string truth_note(const std::vector<Curve>& curves, const std::vector<Cloud
   std::vector<std::string> finest, off;
   for (const Curve& curve : curves) {
     const Run& run = *curve.steps.back().run;
-    const bool is_first = off.empty() || curve.quantity != Quantity::spot_rms;
-    if (!is_first) continue;  // the truth is of the first pattern
-    if (curve.quantity != Quantity::zernike || finest.size() < 2) finest.push_back(run.grid > 0 ? fmt::format("{} samples", text_of(run)) : fmt::format("{} rays, {}", text_of(run), curve.pattern));
-    off.push_back(fmt::format("{} of {}", text_of(curve.uncertainty, curve.quantity), curve.quantity == Quantity::zernike ? "a Zernike coefficient" : fmt::format("the {}", name_of(curve.quantity))));
+    if (curve.pattern != curves.front().pattern && !curve.pattern.empty()) continue;  // the truth is of the first pattern
+    const std::string text = run.grid > 0 ? fmt::format("{} samples", text_of(run)) : fmt::format("{} {} rays", text_of(run), curve.pattern);
+    if (finest.empty() || finest.back() != text) finest.push_back(text);
+    off.push_back(fmt::format("{} ({})", text_of(curve.uncertainty, curve.quantity), curve.quantity == Quantity::zernike ? "a Zernike coefficient" : name_of(curve.quantity)));
   }
   if (finest.empty()) return {};
-  std::string note = fmt::format("the truth here is the finest itself ({}), by the same double-precision code: nothing independent; it may be off by {}, by its own convergence, and that is added to every figure",
-                                 fmt::join(finest, "; "), fmt::join(off, ", "));
-  if (!changes.empty()) note += fmt::format("; of point clouds it is {}, which is no truth of what lies between the points", changes.front().run->interpolation);
+  std::string note = fmt::format("The truth here is the finest itself, {}, by the same double-precision code: it is not independent. By its own convergence it may be off by {}, which every figure includes.",
+                                 fmt::join(finest, " and "), fmt::join(off, ", "));
+  if (!changes.empty()) note += fmt::format(" Of points it is {}, which does not know what lies between them.", changes.front().run->interpolation);
   return note;
 }
 
