@@ -29,8 +29,8 @@ std::string error_name(Quantity quantity) {
 
 const char* unit_of(const study::Worst& worst, Quantity quantity) { return std::isnan(worst.percent) ? study::unit_of(quantity) : "%"; }
 
-// A law is worth drawing where the errors follow one: to a quarter of its order's unit.
-bool has_order(const Curve& curve) { return curve.order.pairs > 3 && curve.order.standard_error < .25; }
+// A law is worth drawing where the errors follow one, and fall.
+bool has_order(const Curve& curve) { return curve.order.pairs > 3 && curve.order.standard_error < .25 && curve.order.slope < -.3; }
 
 std::string series_name(const Curve& curve) {
   return curve.pattern.empty() ? "square grid" : curve.pattern;

@@ -125,6 +125,7 @@ std::string line_of(const CloudChange& change) {
 std::string text_of(const Run& run) { return run.grid > 0 ? fmt::format("{} x {}", run.grid, run.grid) : text_of_count(run.rays); }
 
 std::string text_of(const Worst& worst, Quantity quantity) {
+  if (!std::isfinite(worst.main())) return "an unknown amount";
   const std::string absolute = fmt::format("{} {}", up(worst.absolute), unit_of(quantity));
   if (std::isnan(worst.percent)) return absolute;
   const std::string percent = up(worst.percent) + " %";
@@ -132,8 +133,8 @@ std::string text_of(const Worst& worst, Quantity quantity) {
 }
 
 std::string text_of_seconds(double seconds) {
-  if (!(seconds >= 1e-3)) return two_digits(seconds * 1e6) + " µs";
-  if (seconds < .9995) return two_digits(seconds * 1e3) + " ms";
+  if (seconds < .995e-3) return two_digits(seconds * 1e6) + " µs";
+  if (seconds < .995) return two_digits(seconds * 1e3) + " ms";
   return two_digits(seconds) + " s";
 }
 
