@@ -60,7 +60,19 @@ class Rows {
                              cell(static_cast<std::int64_t>(found.answers.field)), fmt::format("{:g}", found.wavelength_um * 1e3), cell(found.answers.launched), cell(found.answers.arrived),
                              study::unit_of(found.quantity), value.size() == 1 ? cell(value.front()) : "", cell(found.error), percent(found.error), cell(found.bound), percent(found.bound),
                              cell(found.uncertainty), cell(run.processor_s.median), cell(run.processor_s.least), cell(run.processor_s.most), cell(run.wall_s.median),
-                             cell(static_cast<std::int64_t>(run.processor_s.runs)), cloud ? cell(cloud->prepare_s) : "", cloud && !cloud->reason.empty() ? cloud->reason : study::reason_of(found.answers, found.quantity)});
+                             cell(static_cast<std::int64_t>(run.processor_s.runs)), cloud ? cell(cloud->prepare_s) : "", study::reason_of(found.answers, found.quantity)});
+  }
+
+  void add_failed(const study::CloudRun& cloud) {
+    std::vector<std::string> cells(records_.columns.size());
+    const auto cell_of = [&](const char* name) -> std::string& {
+      return cells[static_cast<std::size_t>(std::find_if(records_.columns.begin(), records_.columns.end(), [&](const auto& column) { return column.name == name; }) - records_.columns.begin())];
+    };
+    cell_of("varied") = "interpolation";
+    cell_of("surface") = cell(static_cast<std::int64_t>(cloud.surface_number));
+    cell_of("interpolation") = cloud.interpolation;
+    cell_of("reason") = cloud.reason;
+    records_.rows.push_back(std::move(cells));
   }
 
  private:
@@ -83,7 +95,8 @@ output::Records system_records(const SystemStudy& system) {
                  {curve.quantity, answers, system.sampling.wavelengths_um[answers.wavelength], curve.truths[k].value, curve.truths[k].uncertainty, step.errors[k], step.bounds[k]});
       }
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  for (const study::CloudChange& change : system.changes)
+  for (const study::CloudChange& change : system.changes) {
+    if (!change.run->reason.empty()) rows.add_failed(*change.run);
     for (const study::Quantity quantity : study::quantities) {
       const study::Run& run = study::run_of(*change.run, quantity);
       const auto& finest = study::run_of(*change.finest, quantity).answers;
@@ -94,6 +107,7 @@ output::Records system_records(const SystemStudy& system) {
                  {quantity, answers, system.sampling.wavelengths_um[answers.wavelength], truth, none, study::error_of(study::answer_of(answers, quantity), truth), none});
       }
     }
+  }
   return records;
 }
 

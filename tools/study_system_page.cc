@@ -104,7 +104,7 @@ SystemPlot plot_of_clouds(const SystemStudy& system, Quantity quantity) {
 
 std::string count_name(Quantity quantity) { return quantity == Quantity::spot_rms ? "rays" : "samples"; }
 
-std::string cell_of(double error) { return error == 0 ? "truth" : significant(error, 2); }
+std::string cell_of(double error) { return error == 0 ? "truth" : std::isfinite(error) ? significant(error, 2) : "-"; }
 
 // A table of one quantity: columns of percents and of the unit only where there are any.
 std::string section_of(const SystemStudy& system, Quantity quantity) {

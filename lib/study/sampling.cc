@@ -46,11 +46,11 @@ class CompiledSystem {
  public:
   explicit CompiledSystem(const prescription::Model& model) : model_(model), compiled_(scene::compile(model, analysis::beam_of_job())) {}
 
-  scene::CompileResult& compiled() { return compiled_; }
   struct Timed {
     std::vector<JobResult> results;
     Times times;
   };
+  const scene::CompileResult& compiled() const { return compiled_; }
   Timed run(const JobRequest& request) {
     Timed run = timed(request);
     const bool leaves = std::any_of(run.results.begin(), run.results.end(), [&](const JobResult& result) {
@@ -116,14 +116,29 @@ JobRequest job_of(const SamplingRequest& request, const char* pattern, std::int6
   return job;
 }
 
+double weight_of(const prescription::Surface& surface, const std::string& interpolation) {
+  if (!surface.shape.cloud) return 1;
+  return interpolation == "linear" || interpolation == "c1" ? 10 : 80;
+}
+
+// Of a ray and of a sample of a wavefront, for all fields and wavelengths.
 struct Prices {
   double of_ray = 0, of_sample = 0;
+
+  Prices(const prescription::Model& system, double weights) {
+    const double tasks = static_cast<double>(system.fields.points.size() * system.wavelengths_nm.size());
+    of_ray = tasks * weights;
+    of_sample = tasks * (weights + fit_weight);
+  }
+  double of(std::int64_t rays, int grid) const {
+    constexpr double of_start = 5e6;  // short runs come several times
+    return of_start + static_cast<double>(rays) * of_ray + (grid > 0 ? samples_of(grid) * of_sample : 0);
+  }
 };
-Prices prices_of(const prescription::Model& system) {
-  double weights = 0;
-  for (const prescription::Surface& surface : system.surfaces) weights += surface.shape.cloud ? 10 : 1;
-  const double tasks = static_cast<double>(system.fields.points.size() * system.wavelengths_nm.size());
-  return {tasks * weights, tasks * (weights + fit_weight)};
+
+const std::string& interpolation_of(const prescription::Surface& surface) {
+  static const std::string none;
+  return surface.shape.cloud ? surface.shape.parameters.text("interpolation") : none;
 }
 
 CloudRun measured_cloud(prescription::Model model, std::size_t at, const std::string& interpolation, const JobRequest& spots, const JobRequest& wavefronts) {
@@ -152,7 +167,9 @@ Sampling sample_system(const prescription::Model& system, const SamplingRequest&
   if (!compiled.compiled().scene) return sampling;
   for (const scene::Wavelength& wavelength : compiled.compiled().scene->wavelengths) sampling.wavelengths_um.push_back(wavelength.wavelength_um);
 
-  const Prices prices = prices_of(system);
+  double weights = 0;
+  for (const prescription::Surface& surface : system.surfaces) weights += weight_of(surface, interpolation_of(surface));
+  const Prices prices(system, weights);
   const auto rays = ray_ladder(std::min(static_cast<double>(request.most_rays), std::max(static_cast<double>(least_finest_rays), request.budget / prices.of_ray)));
   std::vector<int> sizes;
   for (const int grid : grids)
@@ -164,22 +181,23 @@ Sampling sample_system(const prescription::Model& system, const SamplingRequest&
     std::function<void()> run;
   };
   std::vector<Work> work;
-  constexpr double of_start = 5e6;  // short runs come several times
-  const auto price_of = [&](std::int64_t ray_count, int grid) { return of_start + static_cast<double>(ray_count) * prices.of_ray + (grid > 0 ? samples_of(grid) * prices.of_sample : 0); };
   for (const char* pattern : patterns) {
     const std::size_t at = sampling.spots.size();
     sampling.spots.emplace_back();
     for (const std::int64_t count : rays)
-      work.push_back({price_of(count, 0), [&, at, pattern, count] { sampling.spots[at].push_back(measured(compiled, job_of(request, pattern, count, 0), pattern)); }});
+      work.push_back({prices.of(count, 0), [&, at, pattern, count] { sampling.spots[at].push_back(measured(compiled, job_of(request, pattern, count, 0), pattern)); }});
   }
   for (const int grid : sizes)
-    work.push_back({price_of(0, grid), [&, grid] { sampling.wavefronts.push_back(measured(compiled, job_of(request, patterns[0], 0, grid), "")); }});
+    work.push_back({prices.of(0, grid), [&, grid] { sampling.wavefronts.push_back(measured(compiled, job_of(request, patterns[0], 0, grid), "")); }});
   for (std::size_t i = 0; i < system.surfaces.size(); ++i) {
-    if (!system.surfaces[i].shape.cloud) continue;
-    for (const std::string& interpolation : interpolations())
-      work.push_back({price_of(rays.back(), sizes.back()), [&, i, interpolation] {
+    const prescription::Surface& surface = system.surfaces[i];
+    if (!surface.shape.cloud) continue;
+    for (const std::string& interpolation : interpolations()) {
+      const Prices others(system, weights - weight_of(surface, interpolation_of(surface)) + weight_of(surface, interpolation));
+      work.push_back({others.of(rays.back(), sizes.back()), [&, i, interpolation] {
         sampling.clouds.push_back(measured_cloud(system, i, interpolation, job_of(request, patterns[0], rays.back(), 0), job_of(request, patterns[0], 0, sizes.back())));
       }});
+    }
   }
   double total = 0, done = 0;
   for (const Work& one : work) total += one.price;

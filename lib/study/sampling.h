@@ -4,7 +4,7 @@
 //
 // Spots by the patterns that fill the pupil, 100, 300, 1000, ... rays per field and wavelength; wavefronts on grids of 16 x 16 and more. The finest are the
 // largest of these counts whose price stays within a budget:
-//   price = rays x fields x wavelengths x sum of weights,  weight 1 of a surface, 10 of one made of points        (1)
+//   price = rays x fields x wavelengths x sum of weights,  weight 1 of a surface, 10 of points, 80 of points by radial functions (1)
 // so that they do not depend on how fast the machine is. Every interpolation of a cloud takes the most rays of the first pattern and the finest grid; the
 // other clouds stay as given.
 //
@@ -25,7 +25,7 @@ namespace sagitta::study {
 struct SamplingRequest {
   std::int64_t most_rays = 3'000'000;  // per field and wavelength; at least 1000
   int most_grid = 384;                 // points a side of the pupil; at least 24
-  double budget = 1e9;                 // of (1), for spots; the grids' total of samples is a 500th of it
+  double budget = 1e9;                 // of (1), for spots, and for wavefronts with a weight of 500 more, for the fit of their Zernike terms
   int thread_count = 0;                // 0: as many as the machine runs
 };
 
