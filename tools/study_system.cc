@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "lib/analysis/job.h"
 #include "lib/output/atomic_file.h"
 #include "lib/output/progress.h"
 #include "lib/output/text.h"
@@ -113,7 +114,7 @@ output::Records system_records(const SystemStudy& system) {
 
 int study_system(const StudyOptions& options) {
   const auto model = load_model(options.system);
-  if (!model) return 1;
+  if (!model || !load_scene(*model, analysis::beam_of_job())) return 1;  // nothing is made where it is wrong
   if (!pictures(command)) return 1;
   const fs::path folder(options.folder);
   if (!make_folder(command, folder)) return 1;

@@ -97,7 +97,7 @@ SystemPlot plot_of_clouds(const SystemStudy& system, Quantity quantity) {
     plot.chart.series.push_back({clouds.size() > 1 ? fmt::format("{} at {}", interpolation_name(*change.run), cloud_name(*change.run)) : interpolation_name(*change.run),
                                  {{change.run->ns_per_ray(), worst.main()}}, false, {}});
   }
-  if (clouds.size() == 1) plot.chart.references.push_back({true, system.changes.front().run->ns_per_ray(), system.changes.front().run->interpolation + ", the truth"});
+  if (clouds.size() == 1) plot.chart.references.push_back({true, system.changes.front().run->ns_per_ray(), system.changes.front().run->interpolation + ", the reference"});
   plot.chart.footer = fmt::format("all by the most rays; {}", machine_note());
   return plot;
 }

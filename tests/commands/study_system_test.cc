@@ -54,8 +54,9 @@ TEST(StudySystemCommand, writes_tables_plots_and_advice) {
 
   // The answers of `trace` are among the rows, to the last bit.
   ASSERT_EQ(run_program("trace '" + system + "' -o '" + folder.path("trace") + "'").status, 0);
+  const json traced = json::parse(read_text(folder.path("trace/summary.json")));
   int compared = 0;
-  for (const json& result : json::parse(read_text(folder.path("trace/summary.json")))["results"])
+  for (const json& result : traced["results"])
     for (const json& row : found["rows"]) {
       const bool is_spot = row["answer"] == "spot RMS" && row["pattern"] == "hexapolar" && row["rays"] == 10000, is_wavefront = row["answer"] == "wavefront RMS" && row["grid"] == 64;
       if ((!is_spot && !is_wavefront) || result["field"] != row["field"] || result["wavelength_nm"] != row["wavelength_nm"]) continue;
@@ -101,6 +102,11 @@ TEST(StudySystemCommand, refuses_what_is_wrong) {
   const Outcome wrong = run_program("study --system '" + folder.file("wrong.yaml", lens + "wavelenghts_nm: [1]\n") + "' -o '" + out + "'");
   EXPECT_EQ(wrong.status, 1);
   EXPECT_THAT(wrong.err, testing::ContainsRegex("wrong.yaml:9:1: error: unknown key 'wavelenghts_nm'"));
+  EXPECT_FALSE(fs::exists(out));
+  const std::string afocal = "sagitta: 1\nwavelengths_nm: [550]\naperture: {image_f_number: 4}\nsurfaces:\n  - {stop: true, thickness_mm: 5}\n  - {name: image}\n";
+  const Outcome later = run_program("study --system '" + folder.file("afocal.yaml", afocal) + "' -o '" + out + "'");
+  EXPECT_EQ(later.status, 1);
+  EXPECT_THAT(later.err, HasSubstr("afocal.yaml:3:"));
   EXPECT_FALSE(fs::exists(out));
   EXPECT_EQ(run_program("study --system '" + folder.path("none.yaml") + "' -o '" + out + "'").status, 1);
   for (const std::string& arguments : {"study lens --system '" + good + "' -o '" + out + "'", "study --system '" + good + "' --rays 100 -o '" + out + "'", "study --system '" + good + "'",
