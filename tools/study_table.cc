@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -80,15 +81,27 @@ std::string value_of(const StudyFile& study, const Parameters& settings, std::st
   return number != settings.numbers.end() ? fmt::format("{:.9g}", number->second) : settings.text(key);
 }
 
+// Whether a setting says something of a variant.
+bool is_of_use(std::string_view key, const Parameters& settings) {
+  constexpr std::array of_points{"points_per_mm2", "rings", "meridians", "margin_spacings", "cloud_radius_mm", "shape_spacings", "search"};
+  const std::string& interpolation = settings.text("interpolation");
+  const bool is_sampled = interpolation != study::Variant::as_prescribed;
+  if (std::find(of_points.begin(), of_points.end(), key) != of_points.end() && !is_sampled) return false;
+  if (key == "tolerance_mm") return !is_sampled;
+  if (key == "shape_spacings") return interpolation == "multiquadric";
+  if (key == "correlation_length_um" || key == "truth") return settings.number("rms_um") != 0;
+  return true;
+}
+
 void name_rows(const StudyFile& study, std::vector<StudyRow>& rows) {
   std::map<std::string, std::set<std::string>> values;
   for (const StudyRow& row : rows)
-    for (const Word& word : words) values[word.key].insert(value_of(study, *row.settings, word.key));
-  const auto is_of_points = [](const StudyRow& row) { return row.settings->text("interpolation") != study::Variant::as_prescribed; };
-  const bool all_as_prescribed = std::none_of(rows.begin(), rows.end(), is_of_points);
+    for (const Word& word : words)
+      if (is_of_use(word.key, *row.settings)) values[word.key].insert(value_of(study, *row.settings, word.key));
+  const auto is_as_prescribed = [](const StudyRow& row) { return row.settings->text("interpolation") == study::Variant::as_prescribed; };
+  const bool all_as_prescribed = std::all_of(rows.begin(), rows.end(), is_as_prescribed);
   for (StudyRow& row : rows) {
-    const bool is_sampled = is_of_points(row);
-    row.series = all_as_prescribed ? "" : row.settings->text("interpolation") + (is_sampled ? " " + row.settings->text("arrangement") : "");
+    row.series = all_as_prescribed ? "" : row.settings->text("interpolation") + (is_as_prescribed(row) ? "" : " " + row.settings->text("arrangement"));
     row.name = row.of_any_rays = row.series;
     const auto add = [&row](const std::string& text, bool to_series, bool to_any_rays) {
       row.name += text;
@@ -97,12 +110,9 @@ void name_rows(const StudyFile& study, std::vector<StudyRow>& rows) {
     };
     for (const Word& word : words) {
       const std::string key = word.key, value = value_of(study, *row.settings, word.key);
-      const bool is_for_points = key == "points_per_mm2" || key == "rings" || key == "meridians" || key == "margin_spacings" || key == "cloud_radius_mm" || key == "shape_spacings" || key == "search";
-      const bool is_nothing = value == "0" || value == "walk", is_tolerance = key == "tolerance_mm";
-      if (values[key].size() < 2 || (is_for_points && !is_sampled) || (is_tolerance && is_sampled) || (key == "shape_spacings" && row.settings->text("interpolation") != "multiquadric") ||
-          ((key == "correlation_length_um" || key == "truth") && row.settings->number("rms_um") == 0))
-        continue;
-      if (is_tolerance) add(is_nothing ? ", as traced" : ", Newton", true, true);
+      const bool is_nothing = value == "0" || value == "walk";
+      if (values[key].size() < 2 || !is_of_use(key, *row.settings)) continue;
+      if (key == "tolerance_mm") add(is_nothing ? ", as traced" : ", Newton", true, true);
       if (!is_nothing) add(" " + fmt::format(fmt::runtime(word.format), value), word.is_in_series, key != "rays");
     }
     for (std::string* name : {&row.name, &row.of_any_rays, &row.series}) {
