@@ -106,7 +106,7 @@ std::vector<StudyPlot> plots_of(const prescription::StudyFile& study, const std:
     StudyPlot plot{kind.file, {}, {}};
     plot.chart.title = fmt::format("{}: {}", study.title, kind.title);
     plot.chart.footer = fmt::format("{}{}; sagitta {}", kind.fitted ? "dashed: fitted orders in the spacing of the points, 1/√density; " : "", processor_name(), version());
-    if (kind.x.column != rays.column) plot.chart.footer = fmt::format("{:g} rays; {}", usual_rays(rows), plot.chart.footer);
+    if (kind.x.column != rays.column) plot.chart.footer = fmt::format("{} rays; {}", count_in_words(usual_rays(rows)), plot.chart.footer);
     plot.chart.x_label = kind.x.label;
     plot.chart.y_label = kind.y.label;
     for (const Series& one : all) {

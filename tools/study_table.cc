@@ -77,6 +77,7 @@ std::string value_of(const StudyFile& study, const Parameters& settings, std::st
     const double threads = settings.number(key);
     return threads == 0 ? "all threads" : fmt::format("{:g} thread{}", threads, threads == 1 ? "" : "s");
   }
+  if (key == "rays") return count_in_words(settings.number(key));
   const auto number = settings.numbers.find(key);
   return number != settings.numbers.end() ? fmt::format("{:.9g}", number->second) : settings.text(key);
 }
@@ -254,6 +255,12 @@ output::Records records_of(const std::vector<StudyRow>& rows) {
   for (const StudyRow& row : rows)
     if (row.is_measured()) records.rows.push_back(row.cells);
   return records;
+}
+
+std::string count_in_words(double count) {
+  const std::string text = fmt::format("{:.9g}", count);
+  const std::size_t zeros = text.size() - 1 - text.find_last_not_of('0');
+  return zeros < 6 ? text : fmt::format("{}e{}", text.substr(0, text.size() - zeros), zeros);
 }
 
 std::string processor_name() {

@@ -46,6 +46,9 @@ int take_finished(std::vector<StudyRow>& rows, const prescription::StudyFile& st
 
 output::Records records_of(const std::vector<StudyRow>& rows);
 
+// A whole number, its zeros counted where there are six or more: "2500", "1e8".
+std::string count_in_words(double count);
+
 // Such as "Intel(R) Xeon(R) ...", "" where the system does not say.
 std::string processor_name();
 
