@@ -102,6 +102,7 @@ TEST(ScalingStudy, MemoryGrowsWithThePointsAndNotWithTheRays) {
   // One column of 2e7 doubles would be 153 MiB. On several threads 64 batches of 4096 rays of seven columns are launched at once, 15 MiB.
   EXPECT_LT(number(study.rows[6], "own_mib"), number(study.rows[4], "own_mib") + 4);
   EXPECT_LT(number(study.rows[7], "own_mib"), number(study.rows[4], "own_mib") + 30);
+  EXPECT_EQ(study.rows[7]["variant"], "analytic 2e7 rays 2 threads");
   EXPECT_EQ(number(study.rows[7], "rays"), 2e7);
   EXPECT_EQ(number(study.rows[7], "threads"), 2);
   for (const char* plot : {"memory-points", "memory-rays", "time-density", "time-rays", "clock-rays"}) EXPECT_THAT(study.page, HasSubstr(std::string(plot) + ".svg"));
