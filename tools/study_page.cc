@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <thread>
 
 #include "lib/prescription/study_keys.h"
@@ -24,7 +25,7 @@ struct PageColumn {
 constexpr PageColumn page_columns[] = {{"points", "points", true}, {"rays", "rays", true}, {"distance_mean_um", "distance, mean µm"}, {"distance_rms_um", "rms µm"},
                                        {"angle_mean_arcmin", "angle, mean arcmin"}, {"angle_rms_arcmin", "rms arcmin"}, {"spot_rms_um", "spot RMS µm"},
                                        {"spot_rms_error_percent", "its error %"}, {"wavefront_rms_error_waves", "wavefront RMS error, waves"}, {"only_one_finds", "only one finds", true},
-                                       {"looks_per_ray", "looks a ray"}, {"prepare_s", "preparation s"}, {"ns_per_ray", "ns a ray"}, {"peak_mib", "peak MiB"}};
+                                       {"looks_per_ray", "looks a ray"}, {"looks_most", "at most", true}, {"prepare_s", "preparation s"}, {"ns_per_ray", "ns a ray"}, {"peak_mib", "peak MiB"}, {"own_mib", "its own MiB"}};
 
 std::string rows_table(const std::vector<StudyRow>& rows) {
   std::vector<PageColumn> shown;  // those that have a value
@@ -93,6 +94,19 @@ std::string paper_table(const prescription::StudyFile& study, const std::vector<
   return "\n## Reference figures beside ours\n\n" + head_of({"settings", "quantity", "reference", "here", "difference %", "rows", "note"}) + text;
 }
 
+// "surface 1 (front), field 0", "surfaces 1 (front), 2 (back), fields 0, 1".
+std::string subjects_of(const prescription::StudyFile& study) {
+  std::set<int> surfaces;
+  std::set<std::size_t> fields;
+  for (const prescription::Parameters& variant : study.variants) {
+    surfaces.insert(prescription::surface_number_of(study, variant));
+    fields.insert(prescription::field_of(variant));
+  }
+  std::vector<std::string> names;
+  for (const int number : surfaces) names.push_back(fmt::format("{} ({})", number, study.system.surfaces[static_cast<std::size_t>(number - 1)].name));
+  return fmt::format("surface{} {}, field{} {}", surfaces.size() == 1 ? "" : "s", fmt::join(names, ", "), fields.size() == 1 ? "" : "s", fmt::join(fields, ", "));
+}
+
 }  // namespace
 
 std::string study_page(const prescription::StudyFile& study, const std::vector<StudyRow>& rows, const std::vector<StudyPlot>& plots) {
@@ -100,11 +114,10 @@ std::string study_page(const prescription::StudyFile& study, const std::vector<S
   std::string text = fmt::format("# {}\n\n", plain(study.title));
   if (!study.about.empty()) text += plain(study.about) + "\n\n";
   if (!study.source.empty()) text += "Source: " + plain(study.source) + "\n\n";
-  const auto& surface = study.system.surfaces[static_cast<std::size_t>(study.surface_number - 1)];
-  text += fmt::format("System: {}, surface {} ({}), field {}, {:g} nm.\n", plain(study.system.name), study.surface_number, plain(surface.name), study.field, study.system.primary_wavelength_nm());
+  text += fmt::format("System: {}, {}, {:g} nm.\n", plain(study.system.name), plain(subjects_of(study)), study.system.primary_wavelength_nm());
   text += fmt::format("Machine: {}, {} threads; sagitta {}, {}.\n\n", plain(processor_name()), std::thread::hardware_concurrency(), version(), build());
   text += fmt::format("{} of {} variants. Distances and angles are of each ray from the exact one at the surface, spots at the image, over the rays that both find; times are medians of repeated "
-                      "runs of processor time, preparation and tracing apart; the peak is that of the variant's own process, with the exact rays. `study.csv` has all of it in full.\n\n## Rows\n\n",
+                      "runs of processor time, preparation and tracing apart; the peak is that of the variant's own process, of which its own is what it did not begin with: the program and the exact rays. `study.csv` has all of it in full.\n\n## Rows\n\n",
                       measured, rows.size());
   text += rows_table(rows) + orders_table(plots) + paper_table(study, rows);
   if (!plots.empty()) text += "\n## Plots\n";

@@ -2,6 +2,7 @@
 // The rows of a study: what study.csv holds, from settings and measurements, and what the page and its plots read from it.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,13 +37,17 @@ std::vector<StudyRow> rows_of(const prescription::StudyFile& study);
 
 struct MeasuredRow {
   study::Measured measured;
-  double peak_mib = 0;  // of the process that measured it
+  double peak_mib = 0;  // that its process held at most
+  double own_mib = std::numeric_limits<double>::quiet_NaN();  // of it, what it did not begin with: the program and the exact rays
 };
 void fill(StudyRow& row, const prescription::StudyFile& study, const MeasuredRow& measured);
 // Takes the rows of an earlier study.csv that are finished and have the same keys; how many.
 int take_finished(std::vector<StudyRow>& rows, const prescription::StudyFile& study, std::string_view csv);
 
 output::Records records_of(const std::vector<StudyRow>& rows);
+
+// A whole number, its zeros counted where there are six or more: "2500", "1e8".
+std::string count_in_words(double count);
 
 // Such as "Intel(R) Xeon(R) ...", "" where the system does not say.
 std::string processor_name();

@@ -89,6 +89,7 @@ prescription::Shape shape_of_points(CloudPointer cloud, const Variant& variant, 
 struct SurfaceTimes {
   Spread processor_ns, wall_ns;
   std::int64_t rays = 0;
+  double launching_ns = 0;  // a ray, by the clock: launched and brought to the surface
 };
 
 // `batch_size` rays at a time; of a way that takes long, as many batches as `seconds` allow.
@@ -96,7 +97,9 @@ SurfaceTimes time_surface(const View& view, const Variant& variant, const Throug
   const Clocked clocked = variant.threads == 1 ? Clocked::this_thread : Clocked::process;
   const std::int64_t batches = variant.threads == 1 ? 1 : 64;
   std::int64_t count = 0;
+  double launching_s = 0;  // of the last run
   const auto run = [&] {
+    const Times start = times_now(clocked);
     trace::PupilStream stream(variant.pattern, variant.rays);
     Times total;
     count = 0;
@@ -117,10 +120,10 @@ SurfaceTimes time_surface(const View& view, const Variant& variant, const Throug
       }
       total = total + (times_now(clocked) - before);
     }
+    launching_s = (times_now(clocked) - start).wall - total.wall;
     return total;
   };
-  const double first = run().wall;  // the caches are warm from here on
-  const int passes = static_cast<int>(std::clamp(2e-3 / first, 1.0, 1000.0)), runs = first < 0.5 ? 7 : 3;
+  const auto [runs, passes] = tracing_repeats(run().wall);  // the caches are warm from here on
   std::vector<double> processor, wall;
   for (int i = 0; i < runs; ++i) {
     Times total;
@@ -129,7 +132,7 @@ SurfaceTimes time_surface(const View& view, const Variant& variant, const Throug
     processor.push_back(total.processor * per_ray);
     wall.push_back(total.wall * per_ray);
   }
-  return {spread_of(processor), spread_of(wall), count};
+  return {spread_of(processor), spread_of(wall), count, 1e9 * launching_s / static_cast<double>(count)};
 }
 
 struct Prepared {
@@ -139,15 +142,14 @@ struct Prepared {
 Prepared prepare(const prescription::Model& model) {
   Prepared result;
   std::vector<double> processor, wall;
-  double total = 0;
-  for (int run = 0; run < 3 || (run < 7 && total < 0.1); ++run) {
+  for (int run = 0, runs = 1; run < runs; ++run) {
     result.compiled = {};
     const Times before = times_now(Clocked::process);
     result.compiled = scene::compile(model);
     const Times taken = times_now(Clocked::process) - before;
     processor.push_back(taken.processor);
     wall.push_back(taken.wall);
-    total += taken.wall;
+    runs = preparation_repeats(wall.front());
   }
   result.processor_s = spread_of(processor);
   result.wall_s = spread_of(wall);
@@ -265,6 +267,13 @@ Subject::Subject(Subject&&) noexcept = default;
 
 double Subject::beam_radius() const { return parts_->beam_radius; }
 
+double Subject::point_count(const Variant& variant) const {
+  const Arrangement& arrangement = variant.arrangement;
+  if (!parts_->reason.empty() || variant.interpolation == Variant::as_prescribed) return 0;
+  if (arrangement.rings > 0) return static_cast<double>(arrangement.rings) * arrangement.meridians;
+  return arrangement.points_per_mm2 * std::numbers::pi * std::pow(parts_->radius(variant), 2);
+}
+
 void Subject::know_truth(const Variant& variant, int thread_count) {
   if (parts_->reason.empty() && variant.rays >= 1) parts_->truth_of(variant, thread_count);
 }
@@ -290,7 +299,9 @@ Measured Subject::measure(const Variant& variant) {
   Row row;
   prescription::Model model = parts.model;
   if (is_sampled) {
+    const Times before = times_now(Clocked::process);
     CloudPointer cloud = parts.cloud(variant);
+    row.sampling_s = (times_now(Clocked::process) - before).wall;
     row.cloud_radius_mm = parts.radius(variant);
     row.points = static_cast<std::int64_t>(cloud->points.size());
     row.points_per_mm2 = static_cast<double>(row.points) / (std::numbers::pi * row.cloud_radius_mm * row.cloud_radius_mm);
@@ -312,6 +323,7 @@ Measured Subject::measure(const Variant& variant) {
   }
 
   std::int64_t looks = 0;
+  int looks_most = 0;
   const auto way = [&](bool counts_looks) -> Through {
     if (nearest) return [&](trace::RayBatch& rays) { view.pass(rays, [&](const auto& p, const auto& d) { return nearest->meet(p, d); }); };
     if (!is_to_tolerance) return [&](trace::RayBatch& rays) { trace::trace_surface(view.scene, view.wavelength(), view.number, rays); };
@@ -319,22 +331,29 @@ Measured Subject::measure(const Variant& variant) {
       std::visit([&](const auto& shape) {
         view.pass(rays, [&](const auto& p, const auto& d) {
           const NewtonHit hit = meet_to_tolerance(shape, p, d, variant.tolerance_mm);
-          if (counts_looks) looks += hit.looks;
+          if (counts_looks) looks += hit.looks, looks_most = std::max(looks_most, hit.looks);
           return hit.crossing;
         });
       }, view.shape());
     };
   };
+  const Times comparison = times_now(Clocked::process);
   trace::RayBatch rays = view.before_surface(truth.pupil);
   row.compared = static_cast<std::int64_t>(rays.size());
   way(true)(rays);
-  if (is_to_tolerance) row.looks_per_ray = static_cast<double>(looks) / static_cast<double>(row.compared);
+  if (is_to_tolerance) {
+    row.looks_per_ray = static_cast<double>(looks) / static_cast<double>(row.compared);
+    row.looks_most = looks_most;
+  }
   row.surface = surface_errors(rays, truth.rays.rays->at_surface);
   view.to_image(rays);
   row.spot = spot_errors(rays, truth.rays.rays->at_image);
+  row.comparing_s = (times_now(Clocked::process) - comparison).wall;
 
-  const SurfaceTimes times = time_surface(view, variant, way(false), nearest ? 64 : 4096, nearest ? 0.25 : std::numeric_limits<double>::infinity());
+  const SurfaceTimes times = time_surface(view, variant, way(false), nearest ? 64 : 4096, nearest ? longest_search_s : std::numeric_limits<double>::infinity());
   row.rays = times.rays;
+  row.threads = numerics::thread_count_of(variant.threads);
+  row.launching_ns_per_ray = times.launching_ns;
   row.ns_per_ray = times.processor_ns;
   row.wall_ns_per_ray = times.wall_ns;
 

@@ -67,9 +67,12 @@ struct Row {
   SpotErrors spot;
   double wavefront_rms_waves = std::numeric_limits<double>::quiet_NaN();  // of the difference, tilt left in; NaN where there is none
   double wavefront_rms_without_tilt_waves = std::numeric_limits<double>::quiet_NaN();
-  double looks_per_ray = std::numeric_limits<double>::quiet_NaN();        // of Newton's method to a tolerance
+  double looks_per_ray = std::numeric_limits<double>::quiet_NaN();        // of Newton's method to a tolerance, in the mean
+  double looks_most = std::numeric_limits<double>::quiet_NaN();           // of the ray that takes most
   Spread prepare_s, prepare_wall_s;
   Spread ns_per_ray, wall_ns_per_ray;    // processor's, of all threads together; the clock's
+  int threads = 1;                       // that the variant's rays are shared among
+  double sampling_s = 0, comparing_s = 0, launching_ns_per_ray = 0;  // by the clock, beside what is measured: points, comparison, launching (price.h)
 };
 
 struct Measured {
@@ -91,6 +94,8 @@ class Subject {
   void know_truth(const Variant& variant, int thread_count);
   // The points of a variant, as a cloud in memory; empty where there are none, or measure() has a reason.
   prescription::PointCloud cloud_of(const Variant& variant);
+  // How many points a variant has, about; 0 of a surface as prescribed.
+  double point_count(const Variant& variant) const;
   // The beam's radius on the surface, mm; NaN where no ray of the rim comes there.
   double beam_radius() const;
 
