@@ -53,18 +53,21 @@ struct Pending {
   StudyRow* row;
   study::Variant variant;
 
-  // Variants with the same exact rays come one after the other.
-  auto truth() const {
-    const study::Noise noise = variant.is_against_clean ? study::Noise{} : variant.noise;
-    const bool is_rough = noise.rms_um > 0;
-    return std::tuple(is_rough ? noise.rms_um : 0, is_rough ? noise.correlation_length_um : 0, is_rough ? variant.seed : 0, variant.pattern.kind, variant.pattern.seed,
-                      std::min(variant.rays, variant.most_compared));
+  // Variants with the same exact rays come one after the other, and among them those with the same rough points.
+  auto shared() const {
+    const bool is_rough = variant.noise.rms_um > 0;
+    const auto shared_points = is_rough ? std::tuple(variant.arrangement.kind, variant.arrangement.points_per_mm2, variant.arrangement.rings, variant.arrangement.meridians,
+                                                     variant.margin_spacings, variant.cloud_radius_mm)
+                                        : std::tuple(study::ArrangementKind{}, 0.0, 0, 0, 0.0, 0.0);
+    return std::tuple(is_rough ? variant.noise.rms_um : 0, is_rough ? variant.noise.correlation_length_um : 0, is_rough ? variant.seed : 0, variant.pattern.kind, variant.pattern.seed,
+                      std::min(variant.rays, variant.most_compared), shared_points);
   }
   // About how long, in microseconds: for the time left.
   std::uint64_t price(double area) const {
     const double points = std::max(variant.arrangement.points_per_mm2 * area, 1.0 * variant.arrangement.rings * variant.arrangement.meridians);
     const bool is_nearest = variant.search == study::Search::nearest_vertex;
-    return static_cast<std::uint64_t>(1e5 + 10 * points + (is_nearest ? 2e6 : static_cast<double>(variant.rays)));
+    const bool is_rough = variant.noise.rms_um > 0;
+    return static_cast<std::uint64_t>(1e5 + points * (3 * variant.prepare_repeats + (is_rough ? 2 : 1)) + (is_nearest ? 2e6 : static_cast<double>(variant.rays)));
   }
 };
 
@@ -76,7 +79,7 @@ std::vector<Pending> pending_of(std::vector<StudyRow>& rows, int thread_count) {
     if (variant.threads == 0) variant.threads = thread_count;
     pending.push_back({&row, variant});
   }
-  std::stable_sort(pending.begin(), pending.end(), [](const Pending& a, const Pending& b) { return a.truth() < b.truth(); });
+  std::stable_sort(pending.begin(), pending.end(), [](const Pending& a, const Pending& b) { return a.shared() < b.shared(); });
   return pending;
 }
 
@@ -92,6 +95,7 @@ bool measure_all(const prescription::StudyFile& study, std::vector<StudyRow>& ro
   bool is_saved = true;
   for (const Pending& one : pending) {
     subject.know_truth(one.variant, thread_count);
+    subject.know_rough_cloud(one.variant, thread_count);
     const MeasuredRow measured = measure_apart(subject, one.variant, [&] { progress.advance(0); });
     fill(*one.row, study, measured);
     is_saved = save(folder, study, rows);  // a disk that was full may have room for the next

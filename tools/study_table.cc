@@ -61,7 +61,7 @@ struct Word {
 constexpr Word words[] = {{"points_per_mm2", "{} per mm²", false}, {"rings", "{} rings", true}, {"meridians", "{} meridians", true}, {"tolerance_mm", "to {} mm", false},
                           {"margin_spacings", "margin {}", true}, {"cloud_radius_mm", "radius {} mm", true}, {"shape_spacings", "shape {}", true}, {"search", "{}", true}, {"pattern", "{}", true},
                           {"rays", "{} rays", false}, {"threads", "{} threads", true}, {"rms_um", "roughness {} µm", true},
-                          {"correlation_length_um", "over {} µm", true}, {"truth", "against the {} surface", true}, {"seed", "seed {}", false}};
+                          {"correlation_length_um", "correlated over {} µm", true}, {"truth", "against the {} surface", true}, {"seed", "seed {}", false}};
 
 std::string value_of(const Parameters& settings, const char* key) {
   const auto number = settings.numbers.find(key);
@@ -75,7 +75,7 @@ void name_rows(std::vector<StudyRow>& rows) {
   for (StudyRow& row : rows) {
     const bool is_sampled = row.settings->text("interpolation") != study::Variant::as_prescribed;
     row.series = row.settings->text("interpolation") + (is_sampled ? " " + row.settings->text("arrangement") : "");
-    row.name = row.of_any_rays = row.series;
+    row.name = row.of_any_rays = row.of_any_seed = row.series;
     for (const Word& word : words) {
       const std::string key = word.key, value = value_of(*row.settings, word.key);
       const bool is_of_points = key == "points_per_mm2" || key == "rings" || key == "meridians" || key == "margin_spacings" || key == "cloud_radius_mm" || key == "shape_spacings" || key == "search";
@@ -85,7 +85,8 @@ void name_rows(std::vector<StudyRow>& rows) {
         continue;
       const std::string text = " " + fmt::format(fmt::runtime(word.format), value);
       row.name += text;
-      if (key != "rays") row.of_any_rays += text;
+      if (key != "rays" && key != "seed") row.of_any_rays += text;
+      if (key != "seed") row.of_any_seed += text;
       if (word.is_in_series) row.series += text;
     }
   }
@@ -161,6 +162,7 @@ study::Variant variant_of(const Parameters& settings) {
   variant.rays = whole("rays");
   variant.most_compared = whole("compared_rays");
   variant.threads = static_cast<int>(whole("threads"));
+  variant.prepare_repeats = static_cast<int>(whole("prepare_repeats"));
   variant.tolerance_mm = settings.number("tolerance_mm");
   return variant;
 }
@@ -188,7 +190,7 @@ double StudyRow::number(std::string_view column) const {
 std::vector<StudyRow> rows_of(const StudyFile& study) {
   const std::string basis = basis_of(study);
   std::vector<StudyRow> rows;
-  for (const Parameters& settings : study.variants) rows.push_back({&settings, "", "", "", hash_of(basis + settings_text(settings)), {}});
+  for (const Parameters& settings : study.variants) rows.push_back({&settings, "", "", "", "", hash_of(basis + settings_text(settings)), {}});
   name_rows(rows);
   return rows;
 }
@@ -221,6 +223,24 @@ output::Records records_of(const std::vector<StudyRow>& rows) {
   for (const StudyRow& row : rows)
     if (row.is_measured()) records.rows.push_back(row.cells);
   return records;
+}
+
+std::vector<double> Ensemble::numbers(std::string_view column) const {
+  std::vector<double> numbers;
+  for (const StudyRow* row : rows) numbers.push_back(row->number(column));
+  return numbers;
+}
+
+std::vector<Ensemble> ensembles_of(const std::vector<StudyRow>& rows) {
+  std::vector<Ensemble> all;
+  std::map<std::string_view, std::size_t> places;
+  for (const StudyRow& row : rows) {
+    if (!row.is_measured() || row.has_failed()) continue;
+    const auto [place, is_new] = places.emplace(row.of_any_seed, all.size());
+    if (is_new) all.emplace_back();
+    all[place->second].rows.push_back(&row);
+  }
+  return all;
 }
 
 std::string processor_name() {
