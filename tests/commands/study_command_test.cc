@@ -42,7 +42,7 @@ const std::string few = "variants:\n  - {points_per_mm2: [4, 16, 64], rays: 300}
 
 TEST(StudyCommand, writes_a_row_for_every_variant_a_page_and_plots) {
   const Folder folder;
-  const Outcome run = run_study(folder, few + "paper:\n  - {where: {points_per_mm2: 16}, angle_mean_arcmin: 1, note: made up}\nnotes: The end.\n");
+  const Outcome run = run_study(folder, few + "paper:\n  - {where: {points_per_mm2: 16}, angle_mean_arcmin: 1, note: made up}\nnotes: |-\n  Not *yet*.\n  - The end.\n");
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(run.err, "");
   EXPECT_THAT(run.out, HasSubstr("A tiny study: 4 of 4 variants measured, 0 of them before"));
@@ -73,7 +73,7 @@ TEST(StudyCommand, writes_a_row_for_every_variant_a_page_and_plots) {
   EXPECT_LT(found["rows"][3]["distance_rms_um"].get<double>(), 1e-10);
 
   const std::string page = read_text(folder.path("out/study.md"));
-  for (const char* text : {"# A tiny study\n", "What it is of.", "4 of 4 variants", "| linear regular 16 per mm² |", "## Orders", "| linear regular | distance |", "| made up |", "The end."})
+  for (const char* text : {"# A tiny study\n", "What it is of.", "4 of 4 variants", "| linear regular 16 per mm² |", "## Orders", "| linear regular | distance |", "| made up |", "\n\nNot \\*yet\\*.\n\n- The end.\n"})
     EXPECT_THAT(page, HasSubstr(text));
   int plots = 0;
   for (std::size_t at = 0; (at = page.find("](", at)) != std::string::npos; ++plots) {

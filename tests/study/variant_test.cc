@@ -129,6 +129,12 @@ TEST(Measured, WhatASubjectKeepsIsWhatItWouldMake) {
           variant.prepare_repeats = 1;
           variants.push_back(variant);
         }
+  for (const std::uint64_t seed : {1, 2}) {  // nothing but the seed changes
+    Variant variant = variants.back();
+    variant.is_against_clean = false;
+    variant.seed = seed;
+    variants.push_back(variant);
+  }
   Variant clean = linear(4);
   clean.rays = 300;
   variants.push_back(clean);
