@@ -57,17 +57,23 @@ double usual_rays(const std::vector<StudyRow>& rows) {
   return std::max_element(count.begin(), count.end(), [](const auto& a, const auto& b) { return a.second < b.second || (a.second == b.second && a.first < b.first); })->first;
 }
 
+// Of absolute values: errors of both signs would cancel.
+double mean_size(const Ensemble& one, const char* column) {
+  std::vector<double> sizes = one.numbers(column);
+  for (double& size : sizes) size = std::abs(size);
+  return study::mean_of(sizes).mean;
+}
+
 // In the order in which the series first come, points by rising x where a line joins densities or rays, as they stand where it joins times.
-std::vector<Series> series_of(const std::vector<StudyRow>& rows, const PlotKind& kind) {
+std::vector<Series> series_of(const std::vector<Ensemble>& ensembles, const PlotKind& kind, double usual) {
   std::vector<Series> all;
   const bool is_over_rays = kind.x.column == rays.column;
-  const double usual = usual_rays(rows);
-  for (const StudyRow& row : rows) {
-    if (!row.is_measured() || row.has_failed() || (!is_over_rays && row.settings->number("rays") != usual)) continue;
-    const std::string& name = is_over_rays ? row.of_any_rays : row.series;
-    const double x = row.number(kind.x.column), y = std::abs(row.number(kind.y.column));
+  for (const Ensemble& one : ensembles) {
+    if (!is_over_rays && one.first().settings->number("rays") != usual) continue;
+    const std::string& name = is_over_rays ? one.first().of_any_rays : one.first().series;
+    const double x = one.mean(kind.x.column).mean, y = mean_size(one, kind.y.column);
     if (!(x > 0 && y > 0)) continue;  // nor has a logarithmic axis a place for it
-    auto found = std::find_if(all.begin(), all.end(), [&](const Series& one) { return one.name == name; });
+    auto found = std::find_if(all.begin(), all.end(), [&](const Series& series) { return series.name == name; });
     if (found == all.end()) found = all.insert(all.end(), {name, {}, {}});
     found->x.push_back(x);
     found->y.push_back(y);
@@ -89,7 +95,7 @@ output::ChartSeries chart_series(const Series& series, bool is_over_time) {
   for (std::size_t i = 0; i < series.x.size(); ++i) result.points.push_back({series.x[i], series.y[i]});
   if (!is_over_time) std::stable_sort(result.points.begin(), result.points.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
   const std::set<double> places(series.x.begin(), series.x.end());
-  result.is_joined = is_over_time || places.size() == series.x.size();  // of several seeds at one density: clouds of markers
+  result.is_joined = is_over_time || places.size() == series.x.size();  // of several at one density: clouds of markers
   return result;
 }
 
@@ -97,16 +103,21 @@ output::ChartSeries chart_series(const Series& series, bool is_over_time) {
 
 std::vector<StudyPlot> plots_of(const prescription::StudyFile& study, const std::vector<StudyRow>& rows) {
   std::vector<StudyPlot> plots;
+  const std::vector<Ensemble> ensembles = ensembles_of(rows);
+  const double usual = usual_rays(rows);
+  std::size_t most_seeds = 1;
+  for (const Ensemble& one : ensembles) most_seeds = std::max(most_seeds, one.rows.size());
   for (const PlotKind& kind : kinds) {
     if (kind.where_varies && !varies(rows, kind.where_varies)) continue;
     const bool is_over_time = kind.x.column == time.column;
-    std::vector<Series> all = series_of(rows, kind);
+    std::vector<Series> all = series_of(ensembles, kind, usual);
     if (!is_over_time) std::erase_if(all, [](const Series& one) { return !has_several(one.x, 2); });
     if (all.empty()) continue;
     StudyPlot plot{kind.file, {}, {}};
     plot.chart.title = fmt::format("{}: {}", study.title, kind.title);
     plot.chart.footer = fmt::format("{}{}; sagitta {}", kind.fitted ? "dashed: fitted orders in the spacing of the points, 1/√density; " : "", processor_name(), version());
-    if (kind.x.column != rays.column) plot.chart.footer = fmt::format("{} rays; {}", count_in_words(usual_rays(rows)), plot.chart.footer);
+    if (kind.x.column != rays.column) plot.chart.footer = fmt::format("{} rays; {}", count_in_words(usual), plot.chart.footer);
+    if (most_seeds > 1) plot.chart.footer = fmt::format("means over up to {} seeds; {}", most_seeds, plot.chart.footer);
     plot.chart.x_label = kind.x.label;
     plot.chart.y_label = kind.y.label;
     for (const Series& one : all) {
@@ -117,7 +128,7 @@ std::vector<StudyPlot> plots_of(const prescription::StudyFile& study, const std:
       const study::Order order = study::order_of(spacings, one.y);
       plot.orders.push_back({one.name, kind.fitted, order});
       const auto [low, high] = std::minmax_element(one.x.begin(), one.x.end());
-      plot.chart.series.back().fit = output::PowerLaw{order.factor, -order.slope / 2, *low, *high, fmt::format("order {:.2f}", order.slope)};
+      plot.chart.series.back().fit = output::PowerLaw{order.factor, -order.slope / 2, *low, *high, fmt::format("order {:.2f}", std::abs(order.slope) < .005 ? 0.0 : order.slope)};
     }
     plots.push_back(std::move(plot));
   }

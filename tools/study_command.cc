@@ -63,6 +63,7 @@ bool measure_all(const prescription::StudyFile& study, std::vector<StudyRow>& ro
   for (const PlannedVariant& one : planned) {
     study::Subject& subject = subjects.of(one);
     subject.know_truth(one.variant, thread_count);
+    subject.know_rough_cloud(one.variant, thread_count);
     const MeasuredRow measured = measure_apart(subject, one.variant, [&] { progress.advance(0); });
     fill(*one.row, study, measured);
     is_saved = save(folder, study, rows);  // a disk that was full may have room for the next

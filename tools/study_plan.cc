@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <tuple>
 
 #include "lib/study/price.h"
@@ -14,6 +15,21 @@ namespace {
 using study::Variant;
 
 study::Noise noise_of_truth(const Variant& variant) { return variant.is_against_clean ? study::Noise{} : variant.noise; }
+
+// What a planned variant may share with the one before: exact rays, of which a subject keeps the rough ones and the clean ones, and rough points.
+auto shared_points(const PlannedVariant& planned) {
+  const Variant& variant = planned.variant;
+  const bool is_rough = variant.noise.rms_um > 0;
+  return is_rough ? std::tuple(variant.seed, variant.arrangement.kind, variant.arrangement.points_per_mm2, variant.arrangement.rings, variant.arrangement.meridians, variant.margin_spacings,
+                               variant.cloud_radius_mm)
+                  : std::tuple(std::uint64_t{0}, study::ArrangementKind{}, 0.0, 0, 0, 0.0, 0.0);
+}
+auto shared(const PlannedVariant& planned) {
+  const Variant& variant = planned.variant;
+  const bool is_rough = variant.noise.rms_um > 0;
+  return std::tuple(planned.surface_number, planned.field, variant.pattern.kind, variant.pattern.seed, std::min(variant.rays, variant.most_compared), is_rough ? variant.noise.rms_um : 0,
+                    is_rough ? variant.noise.correlation_length_um : 0, shared_points(planned));
+}
 
 // What the exact rays of a planned variant are of.
 auto truth(const PlannedVariant& planned) {
@@ -43,17 +59,18 @@ study::Probe probe(study::Subject& subject, const Variant& variant) {
 
 void price(CurrentSubject& subjects, std::vector<PlannedVariant>& planned, int thread_count) {
   std::map<decltype(kind(planned.front())), study::Probe> probes;
-  const PlannedVariant* before = nullptr;
+  std::set<decltype(truth(planned.front()))> known_truths;
+  std::set<decltype(shared(planned.front()))> known_points;
   for (PlannedVariant& one : planned) {
     study::Subject& subject = subjects.of(one);
     const double points = subject.point_count(one.variant);
     auto found = probes.find(kind(one));
     if (found == probes.end()) found = probes.emplace(kind(one), probe(subject, study::probe_of(one.variant, points))).first;
-    const study::Probe& known = found->second;
+    study::Probe known = found->second;
+    if (one.variant.noise.rms_um > 0 && !known_points.insert(shared(one)).second) known.row.sampling_s = 0;
     if (known.row.compared == 0) one.seconds = known.seconds;  // it has no row: others of its kind will hardly have one
     else one.seconds = study::seconds_of(one.variant, points, known);
-    if (!before || truth(*before) != truth(one)) one.seconds += study::exact_seconds_of(one.variant, known, thread_count);
-    before = &one;
+    if (known_truths.insert(truth(one)).second) one.seconds += study::exact_seconds_of(one.variant, known, thread_count);
   }
 }
 
@@ -76,7 +93,7 @@ std::vector<PlannedVariant> plan_of(const prescription::StudyFile& study, std::v
     Variant& variant = planned.back().variant;
     if (variant.threads == 0) variant.threads = thread_count;
   }
-  std::stable_sort(planned.begin(), planned.end(), [](const PlannedVariant& a, const PlannedVariant& b) { return truth(a) < truth(b); });
+  std::stable_sort(planned.begin(), planned.end(), [](const PlannedVariant& a, const PlannedVariant& b) { return shared(a) < shared(b); });
   CurrentSubject subjects(study);
   price(subjects, planned, thread_count);
   return planned;

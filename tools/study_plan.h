@@ -30,7 +30,7 @@ class CurrentSubject {
   std::optional<study::Subject> subject_;
 };
 
-// The rows that are not measured; those of the same surface, field and exact rays come one after the other. Measures a small variant of
+// The rows that are not measured; those of the same surface, field, exact rays and rough points come one after the other. Measures a small variant of
 // each kind, some tenths of a second, to know how long they will take (study/price.h). Variants of 0 threads get `thread_count`.
 std::vector<PlannedVariant> plan_of(const prescription::StudyFile& study, std::vector<StudyRow>& rows, int thread_count);
 

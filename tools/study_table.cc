@@ -62,7 +62,7 @@ struct Word {
 constexpr Word words[] = {{"surface", "{}", true}, {"field", "{}", true}, {"points_per_mm2", "{} per mm²", false}, {"rings", "{} rings", true}, {"meridians", "{} meridians", true}, {"tolerance_mm", "to {} mm", false},
                           {"margin_spacings", "margin {}", true}, {"cloud_radius_mm", "radius {} mm", true}, {"shape_spacings", "shape {}", true}, {"search", "{}", true}, {"pattern", "{}", true},
                           {"rays", "{} rays", false}, {"threads", "{}", true}, {"rms_um", "roughness {} µm", true},
-                          {"correlation_length_um", "over {} µm", true}, {"truth", "against the {} surface", true}, {"seed", "seed {}", false}};
+                          {"correlation_length_um", "correlated over {} µm", true}, {"truth", "against the {} surface", true}, {"seed", "seed {}", false}};
 
 // A field as people name it: "40°", "(10°, 20°)", "5 mm".
 std::string field_name(const prescription::Fields& fields, std::size_t field) {
@@ -103,20 +103,21 @@ void name_rows(const StudyFile& study, std::vector<StudyRow>& rows) {
   const bool all_as_prescribed = std::all_of(rows.begin(), rows.end(), is_as_prescribed);
   for (StudyRow& row : rows) {
     row.series = all_as_prescribed ? "" : row.settings->text("interpolation") + (is_as_prescribed(row) ? "" : " " + row.settings->text("arrangement"));
-    row.name = row.of_any_rays = row.series;
-    const auto add = [&row](const std::string& text, bool to_series, bool to_any_rays) {
+    row.name = row.of_any_rays = row.of_any_seed = row.series;
+    const auto add = [&row](const std::string& text, std::string_view key, bool to_series) {
       row.name += text;
-      if (to_any_rays) row.of_any_rays += text;
+      if (key != "seed") row.of_any_seed += text;
+      if (key != "seed" && key != "rays") row.of_any_rays += text;
       if (to_series) row.series += text;
     };
     for (const Word& word : words) {
       const std::string key = word.key, value = value_of(study, *row.settings, word.key);
       const bool is_nothing = value == "0" || value == "walk";
       if (values[key].size() < 2 || !is_of_use(key, *row.settings)) continue;
-      if (key == "tolerance_mm") add(is_nothing ? ", as traced" : ", Newton", true, true);
-      if (!is_nothing) add(" " + fmt::format(fmt::runtime(word.format), value), word.is_in_series, key != "rays");
+      if (key == "tolerance_mm") add(is_nothing ? ", as traced" : ", Newton", "", true);
+      if (!is_nothing) add(" " + fmt::format(fmt::runtime(word.format), value), key, word.is_in_series);
     }
-    for (std::string* name : {&row.name, &row.of_any_rays, &row.series}) {
+    for (std::string* name : {&row.name, &row.of_any_rays, &row.of_any_seed, &row.series}) {
       name->erase(0, std::min(name->find_first_not_of(" ,"), name->size()));
       if (name->empty()) *name = row.settings->text("interpolation");
     }
@@ -194,6 +195,7 @@ study::Variant variant_of(const Parameters& settings) {
   variant.rays = whole("rays");
   variant.most_compared = whole("compared_rays");
   variant.threads = static_cast<int>(whole("threads"));
+  variant.prepare_repeats = static_cast<int>(whole("prepare_repeats"));
   variant.tolerance_mm = settings.number("tolerance_mm");
   return variant;
 }
@@ -221,7 +223,7 @@ double StudyRow::number(std::string_view column) const {
 std::vector<StudyRow> rows_of(const StudyFile& study) {
   const std::string basis = basis_of(study);
   std::vector<StudyRow> rows;
-  for (const Parameters& settings : study.variants) rows.push_back({&settings, "", "", "", hash_of(basis + settings_text(settings)), {}});
+  for (const Parameters& settings : study.variants) rows.push_back({&settings, "", "", "", "", hash_of(basis + settings_text(settings)), {}});
   name_rows(study, rows);
   return rows;
 }
@@ -261,6 +263,24 @@ std::string count_in_words(double count) {
   const std::string text = fmt::format("{:.9g}", count);
   const std::size_t zeros = text.size() - 1 - text.find_last_not_of('0');
   return zeros < 6 ? text : fmt::format("{}e{}", text.substr(0, text.size() - zeros), zeros);
+}
+
+std::vector<double> Ensemble::numbers(std::string_view column) const {
+  std::vector<double> numbers;
+  for (const StudyRow* row : rows) numbers.push_back(row->number(column));
+  return numbers;
+}
+
+std::vector<Ensemble> ensembles_of(const std::vector<StudyRow>& rows) {
+  std::vector<Ensemble> all;
+  std::map<std::string_view, std::size_t> places;
+  for (const StudyRow& row : rows) {
+    if (!row.is_measured() || row.has_failed()) continue;
+    const auto [place, is_new] = places.emplace(row.of_any_seed, all.size());
+    if (is_new) all.emplace_back();
+    all[place->second].rows.push_back(&row);
+  }
+  return all;
 }
 
 std::string processor_name() {

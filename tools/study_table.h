@@ -9,6 +9,7 @@
 
 #include "lib/output/records.h"
 #include "lib/prescription/study_file.h"
+#include "lib/study/mean.h"
 #include "lib/study/variant.h"
 
 namespace sagitta::tools {
@@ -20,7 +21,8 @@ struct StudyRow {
   const prescription::Parameters* settings = nullptr;
   std::string name;
   std::string series;        // the name without density, number of rays, tolerance and seed
-  std::string of_any_rays;   // the name without the number of rays
+  std::string of_any_rays;   // the name without the number of rays and the seed
+  std::string of_any_seed;   // the name without the seed
   std::string key;           // what the measurement depends on, as a hash: settings, system, program, processor
   std::vector<std::string> cells;
 
@@ -48,6 +50,18 @@ output::Records records_of(const std::vector<StudyRow>& rows);
 
 // A whole number, its zeros counted where there are six or more: "2500", "1e8".
 std::string count_in_words(double count);
+
+// Rows that differ in the seed alone, as the page and the plots show them: as one. Measured, none failed, at least one.
+struct Ensemble {
+  std::vector<const StudyRow*> rows;
+
+  const StudyRow& first() const { return *rows.front(); }
+  const std::string& name() const { return rows.size() > 1 ? first().of_any_seed : first().name; }
+  std::vector<double> numbers(std::string_view column) const;
+  study::Mean mean(std::string_view column) const { return study::mean_of(numbers(column)); }
+};
+// In the order in which they first come.
+std::vector<Ensemble> ensembles_of(const std::vector<StudyRow>& rows);
 
 // Such as "Intel(R) Xeon(R) ...", "" where the system does not say.
 std::string processor_name();

@@ -27,7 +27,8 @@ struct PublishedFigure {
 
 struct StudyFile {
   std::string file;
-  std::string name, title, source, about, notes;
+  std::string name, title, source;
+  std::string about, notes;  // a paragraph a line
   Model system;
   int surface_number = 1;           // under study, and its field: those of variants that name no others
   std::size_t field = 0;

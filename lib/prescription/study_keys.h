@@ -44,6 +44,7 @@ inline constexpr std::array variant_keys{
     numerics::Key{.name = "pattern", .kind = numerics::ValueKind::text, .meaning = "of the rays over the pupil", .choices = "hexapolar"},
     numerics::Key{.name = "rays", .meaning = "rays that are timed, at least", .range = {.low = 1, .high = 1e9, .whole = true}, .fallback = 10000},
     numerics::Key{.name = "compared_rays", .meaning = "about so many of them are compared with the exact ones", .range = {.low = 1, .high = 1e7, .whole = true}, .fallback = 100000},
+    numerics::Key{.name = "prepare_repeats", .meaning = "how often preparation is measured, at least", .range = {.low = 1, .high = 100, .whole = true}, .fallback = 3},
     numerics::Key{.name = "threads", .meaning = "threads; 0: as many as the machine runs", .range = {.low = 0, .high = 1024, .whole = true}, .fallback = 1},
     numerics::Key{.name = "seed", .meaning = "of the places of points and of the roughness", .range = {.low = 0, .high = 0x1p53, .whole = true}, .fallback = 1}};
 

@@ -207,6 +207,9 @@ std::vector<PublishedFigure> read_paper(const YamlNode& node, const std::vector<
   return paper;
 }
 
+// Line ends and all.
+std::string read_paragraphs(const Section& section, std::string_view key) { return section.text(key) ? section.find(key)->text : std::string{}; }
+
 bool is_name(const std::string& text) {
   return text.size() <= 60 && std::all_of(text.begin(), text.end(), [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-' || c == '_'; });
 }
@@ -241,8 +244,8 @@ StudyReadResult read_study(const std::string& file) {
     findings.error(section.find("name")->place, fmt::format("name must be of at most 60 letters, digits, - and _, not '{}'", excerpt(study.name)), "title takes any text");
   study.title = section.text("title").value_or(study.name);
   study.source = section.text("source").value_or("");
-  study.about = section.text("about").value_or("");
-  study.notes = section.text("notes").value_or("");
+  study.about = read_paragraphs(section, "about");
+  study.notes = read_paragraphs(section, "notes");
   study.field = static_cast<std::size_t>(section.number("field").value_or(0));
   const std::string surface = section.text("surface").value_or("");
   read_system(section, surface, study, findings);

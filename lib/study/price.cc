@@ -22,7 +22,7 @@ double seconds_without_rest(const Variant& variant, double points, const Row& ro
   const double trace_s = 1e-9 * row.wall_ns_per_ray.median * (is_nearest ? ratio : 1) / numerics::thread_count_of(variant.threads);
   const double rays = std::min(static_cast<double>(variant.rays), is_nearest ? longest_search_s / trace_s : INFINITY);
   const auto [runs, passes] = tracing_repeats(rays * trace_s);
-  return ratio * row.sampling_s + preparation_repeats(prepare_s) * prepare_s +
+  return ratio * row.sampling_s + preparation_repeats(prepare_s, variant.prepare_repeats) * prepare_s +
          compared_rays(variant) * (is_nearest ? ratio : 1) * row.comparing_s / static_cast<double>(row.compared) +
          (1 + runs * passes) * rays * (1e-9 * row.launching_ns_per_ray + trace_s);
 }

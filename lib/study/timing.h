@@ -43,9 +43,9 @@ inline Spread spread_of(std::vector<double> values) {
 // How long one run of a search among all vertices may take: it is timed on as many rays as this allows.
 inline constexpr double longest_search_s = 0.25;
 
-// How often work is run again whose first run took so long: preparation at least three times, up to seven while that is a tenth of a second; tracing,
+// How often work is run again whose first run took so long: preparation at least so many times, up to seven while that is a tenth of a second; tracing,
 // after a first run that warms the caches, in three or seven runs, each of as many passes as fill 2 ms.
-inline int preparation_repeats(double first_s) { return static_cast<int>(std::clamp(0.1 / first_s, 3.0, 7.0)); }
+inline int preparation_repeats(double first_s, int at_least) { return std::max(at_least, static_cast<int>(std::clamp(0.1 / first_s, 1.0, 7.0))); }
 struct TracingRepeats {
   int runs, passes;
 };

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 #include <numbers>
 #include <utility>
 #include <variant>
@@ -139,7 +140,7 @@ struct Prepared {
   scene::CompileResult compiled;
   Spread processor_s, wall_s;
 };
-Prepared prepare(const prescription::Model& model) {
+Prepared prepare(const prescription::Model& model, int repeats) {
   Prepared result;
   std::vector<double> processor, wall;
   for (int run = 0, runs = 1; run < runs; ++run) {
@@ -149,7 +150,7 @@ Prepared prepare(const prescription::Model& model) {
     const Times taken = times_now(Clocked::process) - before;
     processor.push_back(taken.processor);
     wall.push_back(taken.wall);
-    runs = preparation_repeats(wall.front());
+    runs = preparation_repeats(wall.front(), repeats);
   }
   result.processor_s = spread_of(processor);
   result.wall_s = spread_of(wall);
@@ -195,7 +196,7 @@ struct Subject::Parts {
   std::optional<scene::Scene> scene;  // of the system as prescribed
   std::string reason;
   double beam_radius = nan;
-  std::optional<Truth> truth;
+  std::optional<Truth> clean_truth, rough_truth;
   std::optional<RoughCloud> rough_cloud;
   std::optional<analysis::WavefrontResult> wavefront;
 
@@ -211,22 +212,22 @@ struct Subject::Parts {
     if (!(noise.rms_um > 0)) return std::nullopt;
     return Roughness(noise.rms_um * 1e-3, noise.correlation_length_um * 1e-3, seed);
   }
-  CloudPointer cloud(const Variant& variant) {
-    if (!(variant.noise.rms_um > 0)) return std::make_shared<const prescription::PointCloud>(new_cloud(variant));
+  CloudPointer cloud(const Variant& variant, int thread_count = 0) {
+    if (!(variant.noise.rms_um > 0)) return std::make_shared<const prescription::PointCloud>(new_cloud(variant, thread_count));
     const bool is_known = rough_cloud && rough_cloud->arrangement == variant.arrangement && rough_cloud->noise == variant.noise &&
                           rough_cloud->seed == variant.seed && rough_cloud->radius == radius(variant);
     if (is_known) return rough_cloud->cloud;
     rough_cloud.reset();
     rough_cloud = RoughCloud{variant.arrangement, variant.noise, variant.seed, radius(variant),
-                             std::make_shared<const prescription::PointCloud>(new_cloud(variant))};
+                             std::make_shared<const prescription::PointCloud>(new_cloud(variant, thread_count))};
     return rough_cloud->cloud;
   }
-  prescription::PointCloud new_cloud(const Variant& variant) const {
+  prescription::PointCloud new_cloud(const Variant& variant, int thread_count) const {
     prescription::PointCloud result;
     result.file = fmt::format("{} points", name_of(variant.arrangement.kind));
     const auto sites = sites_over_disc(variant.arrangement, radius(variant), variant.seed);
     const auto rough = roughness(variant.noise, variant.seed);
-    const std::vector<double> above = rough ? heights(*rough, sites, 0) : std::vector<double>(sites.size(), 0.0);
+    const std::vector<double> above = rough ? heights(*rough, sites, thread_count) : std::vector<double>(sites.size(), 0.0);
     result.points.reserve(sites.size());
     std::visit([&](const auto& shape) {
       for (std::size_t i = 0; i < sites.size(); ++i)
@@ -236,9 +237,11 @@ struct Subject::Parts {
   }
   const Truth& truth_of(const Variant& variant, int thread_count = 0) {
     const Noise noise = variant.is_against_clean ? Noise{} : variant.noise;
+    const bool is_rough = noise.rms_um > 0;
+    std::optional<Truth>& truth = is_rough ? rough_truth : clean_truth;
     const std::int64_t compared = std::min(variant.rays, variant.most_compared);
-    const bool is_known = truth && truth->noise == noise && (truth->seed == variant.seed || !(noise.rms_um > 0)) &&
-                          truth->pattern.kind == variant.pattern.kind && truth->pattern.seed == variant.pattern.seed && truth->compared == compared;
+    const bool is_known = truth && truth->pattern.kind == variant.pattern.kind && truth->pattern.seed == variant.pattern.seed && truth->compared == compared &&
+                          (!is_rough || (truth->noise == noise && truth->seed == variant.seed));
     if (is_known) return *truth;
     truth = Truth{noise, variant.seed, variant.pattern, compared, trace::pupil_points(variant.pattern, compared), {}};
     const auto rough = roughness(noise, variant.seed);
@@ -249,7 +252,7 @@ struct Subject::Parts {
 };
 
 Subject::Subject(prescription::Model system, int surface_number, std::size_t field)
-    : parts_(new Parts{std::move(system), surface_number, field, {}, {}, nan, {}, {}, {}}) {
+    : parts_(new Parts{std::move(system), surface_number, field, {}, {}, nan, {}, {}, {}, {}}) {
   Parts& parts = *parts_;
   scene::CompileResult compiled = scene::compile(parts.model);
   if (!compiled.scene) parts.reason = first_error(compiled.findings);
@@ -276,6 +279,15 @@ double Subject::point_count(const Variant& variant) const {
 
 void Subject::know_truth(const Variant& variant, int thread_count) {
   if (parts_->reason.empty() && variant.rays >= 1) parts_->truth_of(variant, thread_count);
+}
+
+void Subject::know_rough_cloud(const Variant& variant, int thread_count) {
+  if (!parts_->reason.empty() || variant.interpolation == Variant::as_prescribed || !(variant.noise.rms_um > 0)) return;
+  try {
+    parts_->cloud(variant, thread_count);
+  } catch (const std::bad_alloc&) {
+    parts_->rough_cloud.reset();
+  }
 }
 
 prescription::PointCloud Subject::cloud_of(const Variant& variant) {
@@ -307,7 +319,7 @@ Measured Subject::measure(const Variant& variant) {
     row.points_per_mm2 = static_cast<double>(row.points) / (std::numbers::pi * row.cloud_radius_mm * row.cloud_radius_mm);
     model.surfaces[at(parts.number)].shape = shape_of_points(std::move(cloud), variant, parts.spacing(variant));
   }
-  Prepared prepared = prepare(model);
+  Prepared prepared = prepare(model, variant.prepare_repeats);
   if (!prepared.compiled.scene) return {{}, first_error(prepared.compiled.findings)};
   row.prepare_s = prepared.processor_s;
   row.prepare_wall_s = prepared.wall_s;

@@ -42,7 +42,7 @@ const std::string few = "variants:\n  - {points_per_mm2: [4, 16, 64], rays: 300}
 
 TEST(StudyCommand, writes_a_row_for_every_variant_a_page_and_plots) {
   const Folder folder;
-  const Outcome run = run_study(folder, few + "paper:\n  - {where: {points_per_mm2: 16}, angle_mean_arcmin: 1, note: made up}\nnotes: The end.\n");
+  const Outcome run = run_study(folder, few + "paper:\n  - {where: {points_per_mm2: 16}, angle_mean_arcmin: 1, note: made up}\nnotes: |-\n  Not *yet*.\n  - The end.\n");
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_THAT(run.err, testing::MatchesRegex("sagitta study: 4 variants to measure, about [0-9]+ (s|min)\n"));
   EXPECT_THAT(run.out, HasSubstr("A tiny study: 4 of 4 variants measured, 0 of them before"));
@@ -73,7 +73,7 @@ TEST(StudyCommand, writes_a_row_for_every_variant_a_page_and_plots) {
   EXPECT_LT(found["rows"][3]["distance_rms_um"].get<double>(), 1e-10);
 
   const std::string page = read_text(folder.path("out/study.md"));
-  for (const char* text : {"# A tiny study\n", "What it is of.", "4 of 4 variants", "| linear regular 16 per mm² |", "## Orders", "| linear regular | distance |", "| made up |", "The end."})
+  for (const char* text : {"# A tiny study\n", "What it is of.", "4 of 4 variants", "| linear regular 16 per mm² |", "## Orders", "| linear regular | distance |", "| made up |", "\n\nNot \\*yet\\*.\n\n- The end.\n"})
     EXPECT_THAT(page, HasSubstr(text));
   int plots = 0;
   for (std::size_t at = 0; (at = page.find("](", at)) != std::string::npos; ++plots) {
@@ -102,6 +102,76 @@ TEST(StudyCommand, keeps_finished_rows_and_measures_what_is_new) {
   const Outcome changed = run_program("study '" + folder.path("study.yaml") + "' -o '" + folder.path("out") + "'");
   EXPECT_EQ(changed.status, 0);
   EXPECT_THAT(changed.err, Not(HasSubstr("kept")));
+}
+
+// The cells of the row of a Markdown table that begins so, from its second column on.
+std::vector<std::string> cells_of(const std::string& page, const std::string& first) {
+  for (const std::string& line : lines_of(page)) {
+    if (!line.starts_with("| " + first + " |")) continue;
+    std::vector<std::string> cells;
+    for (std::size_t at = line.find(" | ") + 3, end; (end = line.find(" |", at)) != std::string::npos; at = end + 3) cells.push_back(line.substr(at, end - at));
+    return cells;
+  }
+  return {};
+}
+
+// Of each density three clouds: three rows of study.csv, one line of the page, with the mean and the standard deviation of its numbers, and one point of a fit.
+TEST(StudyCommand, shows_variants_that_differ_in_the_seed_alone_as_their_mean) {
+  const Folder folder;
+  const Outcome run = run_study(folder,
+                                "variants:\n  - {points_per_mm2: [4, 16, 64], rays: 300, arrangement: random, seed: [1, 2, 3]}\n  - {points_per_mm2: 16, rays: 300, seed: 2}\n"
+                                "  - {points_per_mm2: 1e7, rays: 300, arrangement: jittered, seed: [1, 2]}\n"
+                                "paper:\n  - {where: {points_per_mm2: 16, arrangement: random}, spot_rms_error_percent: 1}\n",
+                                "ulimit -v 1000000; ");
+#if defined(__SANITIZE_ADDRESS__)
+  GTEST_SKIP() << "AddressSanitizer takes more address space than the limit";
+#endif
+  EXPECT_EQ(run.status, 1);
+  const json rows = json::parse(read_text(folder.path("out/study.json")))["rows"];
+  ASSERT_EQ(rows.size(), 12u);
+  const std::string page = read_text(folder.path("out/study.md"));
+  EXPECT_THAT(page, HasSubstr("| variant | seeds | points | rays | distance, mean µm |"));
+  struct Expected {
+    double mean = 0, deviation = 0;
+  };
+  const auto expected_of = [&](std::size_t first, const char* key) {
+    Expected result;
+    for (std::size_t i = 0; i < 3; ++i) result.mean += rows[first + i][key].get<double>() / 3;
+    for (std::size_t i = 0; i < 3; ++i) result.deviation += std::pow(rows[first + i][key].get<double>() - result.mean, 2) / 2;
+    result.deviation = std::sqrt(result.deviation);
+    return result;
+  };
+  std::vector<double> spacings, angles;
+  std::size_t first = 0;
+  for (const char* density : {"4", "16", "64"}) {
+    const auto cells = cells_of(page, std::string("linear random ") + density + " per mm²");
+    ASSERT_GE(cells.size(), 5u) << density;
+    EXPECT_EQ(cells[0], "3");
+    EXPECT_EQ(cells[1], std::to_string(rows[first]["points"].get<int>()));
+    EXPECT_EQ(cells[2], std::to_string(rows[first]["rays"].get<int>()));
+    const Expected distance = expected_of(first, "distance_mean_um");
+    const std::size_t sign = cells[3].find(" ± ");
+    ASSERT_NE(sign, std::string::npos) << cells[3];
+    EXPECT_NEAR(std::stod(cells[3].substr(sign + 4)), distance.deviation, .051 * distance.deviation);  // two digits; the sign is two bytes
+    EXPECT_NEAR(std::stod(cells[3]), distance.mean, distance.deviation / 2);                             // to the first of them
+    spacings.push_back(std::log(rows[first]["points_per_mm2"].get<double>()) / -2);
+    angles.push_back(std::log(expected_of(first, "angle_rms_arcmin").mean));
+    first += 3;
+  }
+  EXPECT_EQ(page.find("seed 1 |"), std::string::npos);
+  EXPECT_EQ(cells_of(page, "linear regular 16 per mm² seed 2").at(0), "1");  // alone: under its own name, without a deviation
+  EXPECT_EQ(cells_of(page, "linear regular 16 per mm² seed 2").at(3).find("±"), std::string::npos);
+  EXPECT_THAT(page, HasSubstr("- linear jittered 10000000 per mm² seed 1: not enough memory"));
+  EXPECT_THAT(page, HasSubstr("- linear jittered 10000000 per mm² seed 2: not enough memory"));
+  // Equal steps of the spacing: the slope of least squares is that from the first mean to the last.
+  EXPECT_NEAR(std::stod(cells_of(page, "linear random").at(1)), (angles[2] - angles[0]) / (spacings[2] - spacings[0]), 5.1e-4);
+  EXPECT_EQ(cells_of(page, "linear random").at(3), "3");
+  const Expected spot = expected_of(3, "spot_rms_error_percent");
+  const auto reference = cells_of(page, "random, points_per_mm2 16");
+  ASSERT_GE(reference.size(), 5u);
+  EXPECT_NEAR(std::stod(reference[2]), spot.mean, spot.deviation / 2);
+  EXPECT_NEAR(std::stod(reference[3]), 100 * (spot.mean - 1), .051);
+  EXPECT_EQ(reference[4], "3");
 }
 
 // SIGKILL while it measures: what had been finished is kept, whole.
