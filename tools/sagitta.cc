@@ -182,13 +182,21 @@ void keep_freed_memory() {
 #endif
 }
 
-}  // namespace
-
 // A misspelt limit would be none.
 bool knows_instruction_set(std::string_view name) {
   const auto& names = sagitta::numerics::instruction_set_names;
   return name.empty() || std::find(names.begin(), names.end(), name) != names.end();
 }
+
+// What --help and --version print is an exception of CLI11's, too.
+int exit_status(CLI::App& app, int argc, char** argv, const int& status) try {
+  app.parse(argc, argv);
+  return status;
+} catch (const CLI::ParseError& fault) {
+  return app.exit(fault) == 0 ? 0 : 2;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is an error to report, not a reason to die
@@ -211,10 +219,8 @@ int main(int argc, char** argv) {
   add_convert(app, status);
   add_study(app, status);
   try {
-    app.parse(argc, argv);
-    if (std::fflush(stdout) != 0) throw std::system_error(errno, std::generic_category());
-  } catch (const CLI::ParseError& fault) {
-    return app.exit(fault) == 0 ? 0 : 2;
+    status = exit_status(app, argc, argv, status);
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw std::system_error(errno, std::generic_category());
   } catch (const std::bad_alloc&) {
     std::fputs("sagitta: not enough memory: ask for fewer fields, wavelengths or points in one run\n", stderr);
     return 1;
