@@ -34,7 +34,7 @@ struct PageColumn {
 };
 constexpr PageColumn page_columns[] = {{"points", "points", true}, {"rays", "rays", true}, {"distance_mean_um", "distance, mean µm"}, {"distance_rms_um", "rms µm"},
                                        {"angle_mean_arcmin", "angle, mean arcmin"}, {"angle_rms_arcmin", "rms arcmin"}, {"spot_rms_um", "spot RMS µm"},
-                                       {"spot_rms_error_percent", "its error %"}, {"wavefront_rms_error_waves", "wavefront RMS error, waves"}, {"only_one_finds", "only one finds", true},
+                                       {"spot_rms_error_percent", "its error %"}, {"wavefront_rms_error_waves", "wavefront RMS error, waves"}, {"wavefront_without_tilt_waves", "without tilt"}, {"only_one_finds", "only one finds", true},
                                        {"looks_per_ray", "looks a ray"}, {"looks_most", "at most", true}, {"prepare_s", "preparation s"}, {"ns_per_ray", "ns a ray"}, {"peak_mib", "peak MiB"}, {"own_mib", "its own MiB"}};
 
 // 0.02581 ± 0.00003: the deviation with two digits, the mean to its last one or with four digits, whichever is less.
