@@ -67,8 +67,9 @@ int check_command(const CheckOptions& options);
 
 struct StudyOptions {
   std::string study;  // a name of systems/studies/, or a file
+  std::string system;  // a prescription in its place: how its answers settle
   std::string folder;
-  int thread_count = 0;  // of the exact rays, and of variants with threads: 0
+  int thread_count = 0;  // of the exact rays, and of variants with threads: 0; of a system's runs
 };
 int study_command(const StudyOptions& options);
 

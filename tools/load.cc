@@ -3,7 +3,6 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <set>
 #include <utility>
 
@@ -28,12 +27,6 @@ std::optional<scene::CompileResult> load_scene(const prescription::Model& model,
   scene::CompileResult compiled = scene::compile(model, beam);
   if (!report(prescription::in_order(compiled.findings, model.documents))) return std::nullopt;
   return compiled;
-}
-
-bool leaves_a_part(const std::vector<scene::CloudPart>& parts, const trace::StatusCounts& rays) {
-  return std::any_of(parts.begin(), parts.end(), [&](const scene::CloudPart& part) {
-    return rays.endings.contains(trace::ending(part.surface, surface::Status::outside_data));
-  });
 }
 
 bool set_wavelengths(prescription::Model& model, const std::vector<double>& wavelengths_nm, const std::string& who) {

@@ -8,17 +8,12 @@
 
 #include "lib/prescription/model.h"
 #include "lib/scene/compile.h"
-#include "lib/trace/ray_batch.h"
 
 namespace sagitta::tools {
 
 // None, after printing every finding to standard error, where there is an error.
 std::optional<prescription::Model> load_model(const std::string& file);
 std::optional<scene::CompileResult> load_scene(const prescription::Model& model, const scene::Beam& beam = {});
-
-// Whether a ray ended as outside_data on a cloud of which a part was triangulated: then the scene is to be loaded and traced
-// again, without a beam.
-bool leaves_a_part(const std::vector<scene::CloudPart>& parts, const trace::StatusCounts& rays);
 
 // Replaces the wavelengths of a model (its primary one stays); false, with a message that begins with "sagitta `who`: ",
 // where a medium does not reach one of them.

@@ -155,11 +155,15 @@ void add_convert(CLI::App& app, int& status) {
 void add_study(CLI::App& app, int& status) {
   static StudyOptions options;
   CLI::App* command = app.add_subcommand("study", "Measure error against run time: every variant of a study, as tables, plots and a page");
-  command->add_option("STUDY", options.study, "study (YAML), or the name of one of systems/studies/")->required();
+  auto* study = command->add_option("STUDY", options.study, "study (YAML), or the name of one of systems/studies/");
+  command->add_option("--system", options.system, "in its place a prescription (YAML): how its spots and wavefronts settle with more rays, and with every interpolation of its points")->excludes(study);
   command->add_option("-o,--output", options.folder, "folder for study.csv, study.json, study.md and the plots; finished rows there are kept")->required();
-  command->add_option("--threads", options.thread_count, "threads for the exact rays, and for variants with threads: 0 (default: as many as the machine runs)")
+  command->add_option("--threads", options.thread_count, "threads for the exact rays, for variants with threads: 0, and with --system (default: as many as the machine runs)")
       ->check(CLI::Range(1, 1024));
-  command->callback([&status] { status = study_command(options); });
+  command->callback([&status] {
+    if (options.study.empty() && options.system.empty()) throw CLI::RequiredError("STUDY or --system");
+    status = study_command(options);
+  });
 }
 
 void add_fit(CLI::App& app, int& status) {
@@ -190,13 +194,21 @@ void keep_freed_memory() {
 #endif
 }
 
-}  // namespace
-
 // A misspelt limit would be none.
 bool knows_instruction_set(std::string_view name) {
   const auto& names = sagitta::numerics::instruction_set_names;
   return name.empty() || std::find(names.begin(), names.end(), name) != names.end();
 }
+
+// What --help and --version print is an exception of CLI11's, too.
+int exit_status(CLI::App& app, int argc, char** argv, const int& status) try {
+  app.parse(argc, argv);
+  return status;
+} catch (const CLI::ParseError& fault) {
+  return app.exit(fault) == 0 ? 0 : 2;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is an error to report, not a reason to die
@@ -220,10 +232,8 @@ int main(int argc, char** argv) {
   add_convert(app, status);
   add_study(app, status);
   try {
-    app.parse(argc, argv);
-    if (std::fflush(stdout) != 0) throw std::system_error(errno, std::generic_category());
-  } catch (const CLI::ParseError& fault) {
-    return app.exit(fault) == 0 ? 0 : 2;
+    status = exit_status(app, argc, argv, status);
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw std::system_error(errno, std::generic_category());
   } catch (const std::bad_alloc&) {
     std::fputs("sagitta: not enough memory: ask for fewer fields, wavelengths or points in one run\n", stderr);
     return 1;

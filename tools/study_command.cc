@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// sagitta study NAME_OR_FILE -o DIR: error against run time, variant by variant.
+// sagitta study NAME_OR_FILE -o DIR: error against run time, variant by variant; with --system, of one system as it is.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <fstream>
 #include <iterator>
-#include <tuple>
 #include <utility>
 
 #include "lib/output/atomic_file.h"
@@ -15,7 +13,9 @@
 #include "tools/load.h"
 #include "tools/pictures.h"
 #include "tools/study_page.h"
+#include "tools/study_plan.h"
 #include "tools/study_run.h"
+#include "tools/study_system.h"
 #include "tools/version.h"
 #include "tools/write.h"
 
@@ -49,53 +49,25 @@ bool save(const fs::path& folder, const prescription::StudyFile& study, const st
   return written(command, json) && csv_is_written;
 }
 
-struct Pending {
-  StudyRow* row;
-  study::Variant variant;
-
-  // Variants with the same exact rays come one after the other.
-  auto truth() const {
-    const study::Noise noise = variant.is_against_clean ? study::Noise{} : variant.noise;
-    const bool is_rough = noise.rms_um > 0;
-    return std::tuple(is_rough ? noise.rms_um : 0, is_rough ? noise.correlation_length_um : 0, is_rough ? variant.seed : 0, variant.pattern.kind, variant.pattern.seed,
-                      std::min(variant.rays, variant.most_compared));
-  }
-  // About how long, in microseconds: for the time left.
-  std::uint64_t price(double area) const {
-    const double points = std::max(variant.arrangement.points_per_mm2 * area, 1.0 * variant.arrangement.rings * variant.arrangement.meridians);
-    const bool is_nearest = variant.search == study::Search::nearest_vertex;
-    return static_cast<std::uint64_t>(1e5 + 10 * points + (is_nearest ? 2e6 : static_cast<double>(variant.rays)));
-  }
-};
-
-std::vector<Pending> pending_of(std::vector<StudyRow>& rows, int thread_count) {
-  std::vector<Pending> pending;
-  for (StudyRow& row : rows) {
-    if (row.is_measured()) continue;
-    study::Variant variant = variant_of(*row.settings);
-    if (variant.threads == 0) variant.threads = thread_count;
-    pending.push_back({&row, variant});
-  }
-  std::stable_sort(pending.begin(), pending.end(), [](const Pending& a, const Pending& b) { return a.truth() < b.truth(); });
-  return pending;
-}
-
 // True if what was measured last is written.
 bool measure_all(const prescription::StudyFile& study, std::vector<StudyRow>& rows, const fs::path& folder, int thread_count) {
-  std::vector<Pending> pending = pending_of(rows, thread_count);
-  if (pending.empty()) return save(folder, study, rows);
-  study::Subject subject(study.system, study.surface_number, study.field);
-  const double area = 3.2 * subject.beam_radius() * subject.beam_radius();
-  std::uint64_t total = 0;
-  for (const Pending& one : pending) total += one.price(area);
-  output::Progress progress("sagitta study " + study.name, total, {.tells_time_left = true});
+  const std::vector<PlannedVariant> planned = plan_of(study, rows, thread_count);
+  if (planned.empty()) return save(folder, study, rows);
+  const auto steps = [](double seconds) { return static_cast<std::uint64_t>(1e6 * seconds); };
+  double seconds = 0;
+  for (const PlannedVariant& one : planned) seconds += one.seconds;
+  fmt::print(stderr, "sagitta study: {} variant{} to measure, about {}\n", planned.size(), planned.size() == 1 ? "" : "s", output::duration_in_words(seconds));
+  output::Progress progress("sagitta study " + study.name, steps(seconds), {.tells_time_left = true});
+  CurrentSubject subjects(study);
   bool is_saved = true;
-  for (const Pending& one : pending) {
+  for (const PlannedVariant& one : planned) {
+    study::Subject& subject = subjects.of(one);
     subject.know_truth(one.variant, thread_count);
+    subject.know_rough_cloud(one.variant, thread_count);
     const MeasuredRow measured = measure_apart(subject, one.variant, [&] { progress.advance(0); });
     fill(*one.row, study, measured);
     is_saved = save(folder, study, rows);  // a disk that was full may have room for the next
-    progress.advance(one.price(area));
+    progress.advance(steps(one.seconds));
   }
   return is_saved;
 }
@@ -103,6 +75,7 @@ bool measure_all(const prescription::StudyFile& study, std::vector<StudyRow>& ro
 }  // namespace
 
 int study_command(const StudyOptions& options) {
+  if (!options.system.empty()) return study_system(options);
   const auto study = load_study(options.study);
   if (!study) return 1;
   if (!pictures(command)) return 1;

@@ -9,6 +9,9 @@
 #if defined(__linux__)
 #include <sys/prctl.h>
 #endif
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
 
 #include <cerrno>
 #include <csignal>
@@ -20,15 +23,29 @@
 namespace sagitta::tools {
 namespace {
 
-// What goes through the pipe: one byte that says which, then the row's bytes, for it is the same program that reads them, or the reason.
+// What goes through the pipe: one byte that says which, then the bytes of this, for it is the same program that reads them, or the reason.
 constexpr char is_row = 'R', is_reason = 'F';
-static_assert(std::is_trivially_copyable_v<study::Row>);
+struct Sent {
+  study::Row row;
+  double start_mib;
+};
+static_assert(std::is_trivially_copyable_v<Sent>);
 
-std::string message_of(const study::Measured& measured) {
+std::string message_of(const study::Measured& measured, double start_mib) {
   if (!measured.row) return is_reason + measured.reason;
-  std::string message(1 + sizeof(study::Row), is_row);
-  std::memcpy(message.data() + 1, &*measured.row, sizeof(study::Row));
+  const Sent sent{*measured.row, start_mib};
+  std::string message(1 + sizeof sent, is_row);
+  std::memcpy(message.data() + 1, &sent, sizeof sent);
   return message;
+}
+
+double peak_mib_of(const rusage& used) { return static_cast<double>(used.ru_maxrss) / 1024; }  // KiB on Linux
+
+// What earlier work has left free goes back to the system: a child would begin with it, and use it unseen.
+void give_back_free_memory() {
+#if defined(__GLIBC__)
+  ::malloc_trim(0);
+#endif
 }
 
 bool send(int descriptor, std::string_view message) {
@@ -56,16 +73,16 @@ std::string receive(int descriptor, const std::function<void()>& waiting) {
   }
 }
 
-study::Measured measured_of(const std::string& message, int status) {
+MeasuredRow measured_of(const std::string& message, int status, double peak_mib) {
   if (WIFSIGNALED(status))
-    return {{}, fmt::format("its process was ended by signal {} ({}){}", WTERMSIG(status), strsignal(WTERMSIG(status)), WTERMSIG(status) == SIGKILL ? ": short of memory, perhaps" : "")};
-  if (message.size() == 1 + sizeof(study::Row) && message.front() == is_row) {
-    study::Row row;
-    std::memcpy(&row, message.data() + 1, sizeof row);
-    return {row, {}};
+    return {{{}, fmt::format("its process was ended by signal {} ({}){}", WTERMSIG(status), strsignal(WTERMSIG(status)), WTERMSIG(status) == SIGKILL ? ": short of memory, perhaps" : "")}, peak_mib};
+  if (message.size() == 1 + sizeof(Sent) && message.front() == is_row) {
+    Sent sent;
+    std::memcpy(&sent, message.data() + 1, sizeof sent);
+    return {{sent.row, {}}, peak_mib, peak_mib - sent.start_mib};
   }
-  if (!message.empty() && message.front() == is_reason) return {{}, message.substr(1)};
-  return {{}, "its process ended without a result"};
+  if (!message.empty() && message.front() == is_reason) return {{{}, message.substr(1)}, peak_mib};
+  return {{{}, "its process ended without a result"}, peak_mib};
 }
 
 [[noreturn]] void be_child(study::Subject& subject, const study::Variant& variant, pid_t parent, int descriptor) {
@@ -75,9 +92,11 @@ study::Measured measured_of(const std::string& message, int status) {
 #else
   static_cast<void>(parent);
 #endif
+  rusage used{};
+  ::getrusage(RUSAGE_SELF, &used);
   std::string message;
   try {
-    message = message_of(subject.measure(variant));
+    message = message_of(subject.measure(variant), peak_mib_of(used));
   } catch (const std::bad_alloc&) {
     message = is_reason + std::string("not enough memory");
   }
@@ -88,6 +107,7 @@ study::Measured measured_of(const std::string& message, int status) {
 
 MeasuredRow measure_apart(study::Subject& subject, const study::Variant& variant, const std::function<void()>& waiting) {
   const auto failure = [](const char* what) { return MeasuredRow{{{}, fmt::format("{}: {}", what, std::generic_category().message(errno))}, 0}; };
+  give_back_free_memory();
   int ends[2];
   if (::pipe(ends) != 0) return failure("no pipe");
   const pid_t self = ::getpid(), child = ::fork();
@@ -108,7 +128,7 @@ MeasuredRow measure_apart(study::Subject& subject, const study::Variant& variant
   rusage used{};
   while (::wait4(child, &status, 0, &used) < 0)
     if (errno != EINTR) return failure("a process is lost");
-  return {measured_of(message, status), static_cast<double>(used.ru_maxrss) / 1024};  // KiB on Linux
+  return measured_of(message, status, peak_mib_of(used));
 }
 
 }  // namespace sagitta::tools

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -58,35 +59,67 @@ struct Word {
   const char* format;  // of its value
   bool is_in_series;
 };
-constexpr Word words[] = {{"points_per_mm2", "{} per mm²", false}, {"rings", "{} rings", true}, {"meridians", "{} meridians", true}, {"tolerance_mm", "to {} mm", false},
+constexpr Word words[] = {{"surface", "{}", true}, {"field", "{}", true}, {"points_per_mm2", "{} per mm²", false}, {"rings", "{} rings", true}, {"meridians", "{} meridians", true}, {"tolerance_mm", "to {} mm", false},
                           {"margin_spacings", "margin {}", true}, {"cloud_radius_mm", "radius {} mm", true}, {"shape_spacings", "shape {}", true}, {"search", "{}", true}, {"pattern", "{}", true},
-                          {"rays", "{} rays", false}, {"threads", "{} threads", true}, {"rms_um", "roughness {} µm", true},
-                          {"correlation_length_um", "over {} µm", true}, {"truth", "against the {} surface", true}, {"seed", "seed {}", false}};
+                          {"rays", "{} rays", false}, {"threads", "{}", true}, {"rms_um", "roughness {} µm", true},
+                          {"correlation_length_um", "correlated over {} µm", true}, {"truth", "against the {} surface", true}, {"seed", "seed {}", false}};
 
-std::string value_of(const Parameters& settings, const char* key) {
+// A field as people name it: "40°", "(10°, 20°)", "5 mm".
+std::string field_name(const prescription::Fields& fields, std::size_t field) {
+  const auto& point = fields.points[field];
+  const char* unit = fields.kind == prescription::FieldKind::angles_deg ? "°" : " mm";
+  return point.x == 0 ? fmt::format("{:g}{}", point.y, unit) : fmt::format("({:g}{}, {:g}{})", point.x, unit, point.y, unit);
+}
+
+std::string value_of(const StudyFile& study, const Parameters& settings, std::string_view key) {
+  if (key == "field") return field_name(study.system.fields, prescription::field_of(settings));
+  if (key == "threads") {
+    const double threads = settings.number(key);
+    return threads == 0 ? "all threads" : fmt::format("{:g} thread{}", threads, threads == 1 ? "" : "s");
+  }
+  if (key == "rays") return count_in_words(settings.number(key));
   const auto number = settings.numbers.find(key);
   return number != settings.numbers.end() ? fmt::format("{:.9g}", number->second) : settings.text(key);
 }
 
-void name_rows(std::vector<StudyRow>& rows) {
+// Whether a setting says something of a variant.
+bool is_of_use(std::string_view key, const Parameters& settings) {
+  constexpr std::array of_points{"points_per_mm2", "rings", "meridians", "margin_spacings", "cloud_radius_mm", "shape_spacings", "search"};
+  const std::string& interpolation = settings.text("interpolation");
+  const bool is_sampled = interpolation != study::Variant::as_prescribed;
+  if (std::find(of_points.begin(), of_points.end(), key) != of_points.end() && !is_sampled) return false;
+  if (key == "tolerance_mm") return !is_sampled;
+  if (key == "shape_spacings") return interpolation == "multiquadric";
+  if (key == "correlation_length_um" || key == "truth") return settings.number("rms_um") != 0;
+  return true;
+}
+
+void name_rows(const StudyFile& study, std::vector<StudyRow>& rows) {
   std::map<std::string, std::set<std::string>> values;
   for (const StudyRow& row : rows)
-    for (const Word& word : words) values[word.key].insert(value_of(*row.settings, word.key));
+    for (const Word& word : words)
+      if (is_of_use(word.key, *row.settings)) values[word.key].insert(value_of(study, *row.settings, word.key));
+  const auto is_as_prescribed = [](const StudyRow& row) { return row.settings->text("interpolation") == study::Variant::as_prescribed; };
+  const bool all_as_prescribed = std::all_of(rows.begin(), rows.end(), is_as_prescribed);
   for (StudyRow& row : rows) {
-    const bool is_sampled = row.settings->text("interpolation") != study::Variant::as_prescribed;
-    row.series = row.settings->text("interpolation") + (is_sampled ? " " + row.settings->text("arrangement") : "");
-    row.name = row.of_any_rays = row.series;
-    for (const Word& word : words) {
-      const std::string key = word.key, value = value_of(*row.settings, word.key);
-      const bool is_of_points = key == "points_per_mm2" || key == "rings" || key == "meridians" || key == "margin_spacings" || key == "cloud_radius_mm" || key == "shape_spacings" || key == "search";
-      const bool is_nothing = (value == "0" && key != "threads") || value == "walk";
-      if (values[key].size() < 2 || (is_of_points && !is_sampled) || is_nothing || (key == "shape_spacings" && row.settings->text("interpolation") != "multiquadric") ||
-          ((key == "correlation_length_um" || key == "truth") && row.settings->number("rms_um") == 0))
-        continue;
-      const std::string text = " " + fmt::format(fmt::runtime(word.format), value);
+    row.series = all_as_prescribed ? "" : row.settings->text("interpolation") + (is_as_prescribed(row) ? "" : " " + row.settings->text("arrangement"));
+    row.name = row.of_any_rays = row.of_any_seed = row.series;
+    const auto add = [&row](const std::string& text, std::string_view key, bool to_series) {
       row.name += text;
-      if (key != "rays") row.of_any_rays += text;
-      if (word.is_in_series) row.series += text;
+      if (key != "seed") row.of_any_seed += text;
+      if (key != "seed" && key != "rays") row.of_any_rays += text;
+      if (to_series) row.series += text;
+    };
+    for (const Word& word : words) {
+      const std::string key = word.key, value = value_of(study, *row.settings, word.key);
+      const bool is_nothing = value == "0" || value == "walk";
+      if (values[key].size() < 2 || !is_of_use(key, *row.settings)) continue;
+      if (key == "tolerance_mm") add(is_nothing ? ", as traced" : ", Newton", "", true);
+      if (!is_nothing) add(" " + fmt::format(fmt::runtime(word.format), value), key, word.is_in_series);
+    }
+    for (std::string* name : {&row.name, &row.of_any_rays, &row.of_any_seed, &row.series}) {
+      name->erase(0, std::min(name->find_first_not_of(" ,"), name->size()));
+      if (name->empty()) *name = row.settings->text("interpolation");
     }
   }
 }
@@ -118,13 +151,14 @@ void add(Cells& cells, const study::Row& row) {
                     {"spot_rms_um", cell(row.spot.rms_radius_um)}, {"true_spot_rms_um", cell(row.spot.true_rms_radius_um)}, {"spot_rms_error_percent", cell(row.spot.rms_radius_percent)},
                     {"wavefront_rms_error_waves", cell(row.wavefront_rms_waves)}, {"wavefront_without_tilt_waves", cell(row.wavefront_rms_without_tilt_waves)},
                     {"only_one_finds", cell(found.by_one_only())}, {"only_truth_finds", cell(found.by_truth_only)}, {"only_variant_finds", cell(found.by_variant_only)},
-                    {"both_find", cell(found.by_both)}, {"looks_per_ray", cell(row.looks_per_ray)},
+                    {"both_find", cell(found.by_both)}, {"looks_per_ray", cell(row.looks_per_ray)}, {"looks_most", cell(row.looks_most)},
                     {"prepare_s", cell(row.prepare_s.median)}, {"prepare_least_s", cell(row.prepare_s.least)}, {"prepare_most_s", cell(row.prepare_s.most)},
                     {"prepare_wall_s", cell(row.prepare_wall_s.median)}, {"prepare_runs", cell(row.prepare_s.runs)}, {"ns_per_ray", cell(row.ns_per_ray.median)},
                     {"ns_per_ray_least", cell(row.ns_per_ray.least)}, {"ns_per_ray_most", cell(row.ns_per_ray.most)}, {"wall_ns_per_ray", cell(row.wall_ns_per_ray.median)},
                     {"trace_runs", cell(row.ns_per_ray.runs)}});
   cells["cloud_radius_mm"] = cell(row.cloud_radius_mm);
   cells["rays"] = cell(row.rays);
+  cells["threads"] = cell(row.threads);
   cells["compared_rays"] = cell(row.compared);
 }
 
@@ -161,6 +195,7 @@ study::Variant variant_of(const Parameters& settings) {
   variant.rays = whole("rays");
   variant.most_compared = whole("compared_rays");
   variant.threads = static_cast<int>(whole("threads"));
+  variant.prepare_repeats = static_cast<int>(whole("prepare_repeats"));
   variant.tolerance_mm = settings.number("tolerance_mm");
   return variant;
 }
@@ -171,10 +206,10 @@ const std::vector<output::RecordColumn>& study_columns() {
       {"distance_mean_um"}, {"distance_rms_um"}, {"angle_mean_arcmin"}, {"angle_rms_arcmin"}, {"spot_rms_um"}, {"spot_rms_error_percent"}, {"wavefront_rms_error_waves"},
       {"only_one_finds"}, {"prepare_s"}, {"ns_per_ray"}, {"peak_mib"},
       // further ones
-      {"search", true}, {"pattern", true}, {"seed"}, {"roughness_rms_um"}, {"correlation_length_um"}, {"truth", true}, {"rings"}, {"meridians"}, {"margin_spacings"}, {"shape_spacings"},
+      {"surface", true}, {"field"}, {"search", true}, {"pattern", true}, {"seed"}, {"roughness_rms_um"}, {"correlation_length_um"}, {"truth", true}, {"rings"}, {"meridians"}, {"margin_spacings"}, {"shape_spacings"},
       {"compared_rays"}, {"both_find"}, {"only_truth_finds"}, {"only_variant_finds"}, {"cloud_radius_mm"}, {"distance_max_um"}, {"angle_max_arcmin"}, {"true_spot_rms_um"},
-      {"wavefront_without_tilt_waves"}, {"looks_per_ray"}, {"prepare_least_s"}, {"prepare_most_s"}, {"prepare_wall_s"}, {"prepare_runs"}, {"ns_per_ray_least"}, {"ns_per_ray_most"},
-      {"wall_ns_per_ray"}, {"trace_runs"}, {"failed", true}, {"key", true}};
+      {"wavefront_without_tilt_waves"}, {"looks_per_ray"}, {"looks_most"}, {"prepare_least_s"}, {"prepare_most_s"}, {"prepare_wall_s"}, {"prepare_runs"}, {"ns_per_ray_least"}, {"ns_per_ray_most"},
+      {"wall_ns_per_ray"}, {"trace_runs"}, {"own_mib"}, {"failed", true}, {"key", true}};
   return columns;
 }
 
@@ -188,8 +223,8 @@ double StudyRow::number(std::string_view column) const {
 std::vector<StudyRow> rows_of(const StudyFile& study) {
   const std::string basis = basis_of(study);
   std::vector<StudyRow> rows;
-  for (const Parameters& settings : study.variants) rows.push_back({&settings, "", "", "", hash_of(basis + settings_text(settings)), {}});
-  name_rows(rows);
+  for (const Parameters& settings : study.variants) rows.push_back({&settings, "", "", "", "", hash_of(basis + settings_text(settings)), {}});
+  name_rows(study, rows);
   return rows;
 }
 
@@ -198,6 +233,7 @@ void fill(StudyRow& row, const StudyFile& study, const MeasuredRow& measured) {
   if (measured.measured.row) add(cells, *measured.measured.row);
   else cells["failed"] = output::printable(measured.measured.reason, 1000);
   if (measured.peak_mib > 0) cells["peak_mib"] = cell(measured.peak_mib);
+  cells["own_mib"] = cell(measured.own_mib);
   row.cells = in_order(cells);
 }
 
@@ -221,6 +257,30 @@ output::Records records_of(const std::vector<StudyRow>& rows) {
   for (const StudyRow& row : rows)
     if (row.is_measured()) records.rows.push_back(row.cells);
   return records;
+}
+
+std::string count_in_words(double count) {
+  const std::string text = fmt::format("{:.9g}", count);
+  const std::size_t zeros = text.size() - 1 - text.find_last_not_of('0');
+  return zeros < 6 ? text : fmt::format("{}e{}", text.substr(0, text.size() - zeros), zeros);
+}
+
+std::vector<double> Ensemble::numbers(std::string_view column) const {
+  std::vector<double> numbers;
+  for (const StudyRow* row : rows) numbers.push_back(row->number(column));
+  return numbers;
+}
+
+std::vector<Ensemble> ensembles_of(const std::vector<StudyRow>& rows) {
+  std::vector<Ensemble> all;
+  std::map<std::string_view, std::size_t> places;
+  for (const StudyRow& row : rows) {
+    if (!row.is_measured() || row.has_failed()) continue;
+    const auto [place, is_new] = places.emplace(row.of_any_seed, all.size());
+    if (is_new) all.emplace_back();
+    all[place->second].rows.push_back(&row);
+  }
+  return all;
 }
 
 std::string processor_name() {

@@ -75,8 +75,9 @@ class ChunkPacker {
     const std::size_t width = static_cast<std::size_t>(part.width);
     plain_.resize(width * part.channels.size() * static_cast<std::size_t>(std::min(rows_of_chunk, part.height - first_row)));
     std::span<std::uint32_t> left(plain_);
+    const std::vector<const ExrChannel*> channels = channels_in_order(part);
     for (std::size_t from = static_cast<std::size_t>(first_row) * width; !left.empty(); from += width)
-      for (const ExrChannel* channel : channels_in_order(part)) {
+      for (const ExrChannel* channel : channels) {
         std::visit([&](const auto& pixels) { copy_row(pixels, from, left.first(width)); }, channel->pixels);
         left = left.subspan(width);
       }

@@ -10,14 +10,11 @@
 #include "lib/output/text.h"
 
 namespace sagitta::output {
-namespace {
 
-std::string in_words(double seconds) {
+std::string duration_in_words(double seconds) {
   if (!(seconds < 100)) return fmt::format("{:.0f} min", std::ceil(seconds / 60));
   return fmt::format("{:.0f} s", std::ceil(seconds));
 }
-
-}  // namespace
 
 Progress::Progress(std::string what, std::uint64_t total, ProgressManners manners)
     : what_(printable(what, 40)),
@@ -42,7 +39,7 @@ void Progress::advance(std::uint64_t steps) {
   const auto percent = static_cast<int>(100.0 * static_cast<double>(done) / static_cast<double>(total_));
   const bool tells = manners_.tells_time_left && done > 0;
   const double left = std::chrono::duration<double>(now - start_).count() * (static_cast<double>(total_) / static_cast<double>(std::max<std::uint64_t>(1, done)) - 1);
-  show(fmt::format("{}  {} %{}", what_, percent, tells ? ", " + in_words(left) + " left" : ""));
+  show(fmt::format("{}  {} %{}", what_, percent, tells ? ", " + duration_in_words(left) + " left" : ""));
 }
 
 void Progress::show(std::string line) {

@@ -13,6 +13,9 @@
 
 namespace sagitta::output {
 
+// "45 s", "3 min": rounded up.
+std::string duration_in_words(double seconds);
+
 struct ProgressManners {
   int descriptor = 2;  // standard error
   std::chrono::milliseconds silence{1000};

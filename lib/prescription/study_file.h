@@ -6,7 +6,9 @@
 // `roughness` among them. `points_per_mm` has become `points_per_mm2`.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,13 +27,25 @@ struct PublishedFigure {
 
 struct StudyFile {
   std::string file;
-  std::string name, title, source, about, notes;
+  std::string name, title, source;
+  std::string about, notes;  // a paragraph a line
   Model system;
-  int surface_number = 1;           // under study
+  int surface_number = 1;           // under study, and its field: those of variants that name no others
   std::size_t field = 0;
   std::vector<Parameters> variants;  // block by block; within one, keys in the order of study_keys.h, the last one fastest
   std::vector<PublishedFigure> paper;
 };
+
+// The number of the first surface of this name, from 1; none where no surface has it.
+inline std::optional<int> surface_named(const Model& system, const std::string& name) {
+  const auto found = std::find_if(system.surfaces.begin(), system.surfaces.end(), [&](const Surface& one) { return one.name == name; });
+  if (found == system.surfaces.end()) return std::nullopt;
+  return static_cast<int>(found - system.surfaces.begin()) + 1;
+}
+
+// Of a variant.
+inline int surface_number_of(const StudyFile& study, const Parameters& variant) { return surface_named(study.system, variant.text("surface")).value_or(study.surface_number); }
+inline std::size_t field_of(const Parameters& variant) { return static_cast<std::size_t>(variant.number("field")); }
 
 inline bool has_settings(const Parameters& variant, const Parameters& where) {
   for (const auto& [key, value] : where.numbers)

@@ -19,13 +19,15 @@ inline constexpr std::array study_keys{
     numerics::Key{.name = "about", .kind = numerics::ValueKind::text, .meaning = "what the study is of, for the page"},
     numerics::Key{.name = "notes", .kind = numerics::ValueKind::text, .meaning = "what its results mean, for the end of the page"},
     numerics::Key{.name = "system", .kind = numerics::ValueKind::file, .meaning = "file of the prescription", .required = true},
-    numerics::Key{.name = "surface", .kind = numerics::ValueKind::text, .meaning = "name of the surface under study", .required = true},
-    numerics::Key{.name = "field", .meaning = "number of the field, from 0", .range = {.low = 0, .high = 1e6, .whole = true}},
+    numerics::Key{.name = "surface", .kind = numerics::ValueKind::text, .meaning = "name of the surface under study, unless a variant names another", .required = true},
+    numerics::Key{.name = "field", .meaning = "number of the field, from 0, likewise", .range = {.low = 0, .high = 1e6, .whole = true}},
     numerics::Key{.name = "variants", .kind = numerics::ValueKind::list, .meaning = "blocks of settings, every one a value or a list of them", .required = true},
     numerics::Key{.name = "paper", .kind = numerics::ValueKind::list, .meaning = "printed figures to stand beside the study's"}};
 
 // Of a block of variants, in the order in which they are multiplied out.
 inline constexpr std::array variant_keys{
+    numerics::Key{.name = "surface", .kind = numerics::ValueKind::text, .meaning = "name of the surface under study; the study's unless given"},
+    numerics::Key{.name = "field", .meaning = "number of the field, from 0; the study's unless given", .range = {.low = 0, .high = 1e6, .whole = true}},
     numerics::Key{.name = "roughness", .kind = numerics::ValueKind::mapping, .meaning = "random height on the surface; none unless given"},
     numerics::Key{.name = "interpolation", .kind = numerics::ValueKind::text, .meaning = "surface between the points; analytic: as prescribed, without points",
                   .choices = "linear|c1|cubic|thin_plate|multiquadric|analytic"},
@@ -42,6 +44,7 @@ inline constexpr std::array variant_keys{
     numerics::Key{.name = "pattern", .kind = numerics::ValueKind::text, .meaning = "of the rays over the pupil", .choices = "hexapolar"},
     numerics::Key{.name = "rays", .meaning = "rays that are timed, at least", .range = {.low = 1, .high = 1e9, .whole = true}, .fallback = 10000},
     numerics::Key{.name = "compared_rays", .meaning = "about so many of them are compared with the exact ones", .range = {.low = 1, .high = 1e7, .whole = true}, .fallback = 100000},
+    numerics::Key{.name = "prepare_repeats", .meaning = "how often preparation is measured, at least", .range = {.low = 1, .high = 100, .whole = true}, .fallback = 3},
     numerics::Key{.name = "threads", .meaning = "threads; 0: as many as the machine runs", .range = {.low = 0, .high = 1024, .whole = true}, .fallback = 1},
     numerics::Key{.name = "seed", .meaning = "of the places of points and of the roughness", .range = {.low = 0, .high = 0x1p53, .whole = true}, .fallback = 1}};
 

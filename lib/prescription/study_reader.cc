@@ -109,7 +109,10 @@ std::vector<Parameters> read_settings(const YamlNode& node, const std::string& o
   return all;
 }
 
-Parameters with_fallbacks(Parameters settings) {
+// Surface and field are the study's, where they are not given.
+Parameters with_fallbacks(Parameters settings, const std::string& surface, std::size_t field) {
+  settings.texts.emplace("surface", surface);
+  settings.numbers.emplace("field", static_cast<double>(field));
   const auto fill = [&](KeyTable keys) {
     for (const Key& key : keys) {
       if (key.kind == ValueKind::number && key.name != "points_per_mm") settings.numbers.emplace(key.name, key.fallback);
@@ -121,8 +124,27 @@ Parameters with_fallbacks(Parameters settings) {
   return settings;
 }
 
-// What one setting says to another.
-void check_variant(const Parameters& variant, const YamlNode& block, Findings& findings) {
+// The number of the surface that is named here; none, with an error, where the system has no such one.
+std::optional<int> find_surface(const std::string& name, const Place& place, const Model& system, Findings& findings) {
+  const auto number = surface_named(system, name);
+  if (number) return number;
+  std::vector<std::string> names;
+  for (const Surface& one : system.surfaces)
+    if (!one.name.empty()) names.push_back(one.name);
+  const std::string meant = nearest_name(name, names);
+  findings.error(place, fmt::format("there is no surface '{}' in {}", excerpt(name), fs::path(system.file).filename().string()),
+                 meant.empty() ? fmt::format("its surfaces are: {}", fmt::join(names, ", ")) : fmt::format("did you mean '{}'?", meant));
+  return std::nullopt;
+}
+
+void check_field(double field, const Place& place, const Model& system, Findings& findings) {
+  const std::size_t count = system.fields.points.size();
+  if (!(field < static_cast<double>(count)))
+    findings.error(place, fmt::format("there is no field {:g}", field), fmt::format("the system has 0 to {}", count - 1));
+}
+
+// What one setting says to another, and to the system, if that could be read.
+void check_variant(const Parameters& variant, const YamlNode& block, const Model& system, Findings& findings) {
   const bool is_sampled = variant.text("interpolation") != "analytic", is_on_rings = variant.number("rings") > 0 || variant.number("meridians") > 0;
   const auto at = [&](const char* key) {
     const auto found = variant.places.find(key);
@@ -141,9 +163,12 @@ void check_variant(const Parameters& variant, const YamlNode& block, Findings& f
                    "put it into a block of its own");
   if (variant.number("tolerance_mm") > 0 && is_sampled)
     findings.error(at("tolerance_mm"), fmt::format("tolerance_mm has no use with interpolation: {}", variant.text("interpolation")), "it is for interpolation: analytic");
+  if (system.surfaces.empty()) return;
+  if (variant.places.contains("surface")) find_surface(variant.text("surface"), at("surface"), system, findings);
+  if (variant.places.contains("field")) check_field(variant.number("field"), at("field"), system, findings);
 }
 
-std::vector<Parameters> read_variants(const YamlNode& node, Findings& findings) {
+std::vector<Parameters> read_variants(const YamlNode& node, const StudyFile& study, const std::string& surface, Findings& findings) {
   std::vector<Parameters> variants;
   if (node.kind != Kind::sequence || node.items.empty()) {
     refuse(node, "variants", "a list of at least one block of settings", findings);
@@ -154,8 +179,8 @@ std::vector<Parameters> read_variants(const YamlNode& node, Findings& findings) 
     const int errors_before = findings.error_count();
     for (const Parameters& given : read_settings(block, fmt::format("block {} of variants", i + 1), variant_keys, Lists::multiplied, findings)) {
       if (findings.error_count() > errors_before) break;
-      variants.push_back(with_fallbacks(given));
-      check_variant(variants.back(), block, findings);
+      variants.push_back(with_fallbacks(given, surface, study.field));
+      check_variant(variants.back(), block, study.system, findings);
     }
   }
   if (variants.size() > most_variants) findings.error(node.place, fmt::format("{} variants are more than {}", variants.size(), most_variants), "make several studies");
@@ -182,11 +207,14 @@ std::vector<PublishedFigure> read_paper(const YamlNode& node, const std::vector<
   return paper;
 }
 
+// Line ends and all.
+std::string read_paragraphs(const Section& section, std::string_view key) { return section.text(key) ? section.find(key)->text : std::string{}; }
+
 bool is_name(const std::string& text) {
   return text.size() <= 60 && std::all_of(text.begin(), text.end(), [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-' || c == '_'; });
 }
 
-void read_system(const Section& section, StudyFile& study, Findings& findings) {
+void read_system(const Section& section, const std::string& surface, StudyFile& study, Findings& findings) {
   const auto name = section.text("system");
   if (!name) return;
   const Place& place = section.find("system")->place;
@@ -197,21 +225,8 @@ void read_system(const Section& section, StudyFile& study, Findings& findings) {
   if (!read.findings.all().empty()) findings.note(place, "named here");
   if (!read.model) return;
   study.system = std::move(*read.model);
-  const auto& surfaces = study.system.surfaces;
-  if (const auto surface = section.text("surface")) {
-    const auto found = std::find_if(surfaces.begin(), surfaces.end(), [&](const Surface& one) { return one.name == *surface; });
-    std::vector<std::string> names;
-    for (const Surface& one : surfaces)
-      if (!one.name.empty()) names.push_back(one.name);
-    const std::string meant = nearest_name(*surface, names);
-    if (found == surfaces.end())
-      findings.error(section.find("surface")->place, fmt::format("there is no surface '{}' in {}", excerpt(*surface), fs::path(*file).filename().string()),
-                     meant.empty() ? fmt::format("its surfaces are: {}", fmt::join(names, ", ")) : fmt::format("did you mean '{}'?", meant));
-    else
-      study.surface_number = static_cast<int>(found - surfaces.begin()) + 1;
-  }
-  if (study.field >= study.system.fields.points.size())
-    findings.error(section.find("field")->place, fmt::format("there is no field {}", study.field), fmt::format("the system has 0 to {}", study.system.fields.points.size() - 1));
+  if (!surface.empty()) study.surface_number = find_surface(surface, section.find("surface")->place, study.system, findings).value_or(1);
+  if (const YamlNode* field = section.find("field")) check_field(static_cast<double>(study.field), field->place, study.system, findings);
 }
 
 }  // namespace
@@ -229,11 +244,12 @@ StudyReadResult read_study(const std::string& file) {
     findings.error(section.find("name")->place, fmt::format("name must be of at most 60 letters, digits, - and _, not '{}'", excerpt(study.name)), "title takes any text");
   study.title = section.text("title").value_or(study.name);
   study.source = section.text("source").value_or("");
-  study.about = section.text("about").value_or("");
-  study.notes = section.text("notes").value_or("");
+  study.about = read_paragraphs(section, "about");
+  study.notes = read_paragraphs(section, "notes");
   study.field = static_cast<std::size_t>(section.number("field").value_or(0));
-  read_system(section, study, findings);
-  if (const YamlNode* node = section.find("variants")) study.variants = read_variants(*node, findings);
+  const std::string surface = section.text("surface").value_or("");
+  read_system(section, surface, study, findings);
+  if (const YamlNode* node = section.find("variants")) study.variants = read_variants(*node, study, surface, findings);
   if (const YamlNode* node = section.find("paper")) study.paper = read_paper(*node, study.variants, findings);
   Findings ordered = in_order(findings, {{file, {}}});
   if (findings.has_errors()) return {std::nullopt, std::move(ordered)};

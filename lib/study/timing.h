@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long work takes: processor time, which other work on the machine disturbs less, and the clock's.
+// How long work takes: processor time, which other work on the machine disturbs less, and the clock's; and how often it is repeated.
 #pragma once
 
 #include <algorithm>
@@ -39,5 +39,16 @@ inline Spread spread_of(std::vector<double> values) {
   const std::size_t count = values.size();
   return {(values[(count - 1) / 2] + values[count / 2]) / 2, values.front(), values.back(), static_cast<int>(count)};
 }
+
+// How long one run of a search among all vertices may take: it is timed on as many rays as this allows.
+inline constexpr double longest_search_s = 0.25;
+
+// How often work is run again whose first run took so long: preparation at least so many times, up to seven while that is a tenth of a second; tracing,
+// after a first run that warms the caches, in three or seven runs, each of as many passes as fill 2 ms.
+inline int preparation_repeats(double first_s, int at_least) { return std::max(at_least, static_cast<int>(std::clamp(0.1 / first_s, 1.0, 7.0))); }
+struct TracingRepeats {
+  int runs, passes;
+};
+inline TracingRepeats tracing_repeats(double first_s) { return {first_s < 0.5 ? 7 : 3, static_cast<int>(std::clamp(2e-3 / first_s, 1.0, 1000.0))}; }
 
 }  // namespace sagitta::study

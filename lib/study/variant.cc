@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 #include <numbers>
 #include <utility>
 #include <variant>
@@ -17,6 +18,7 @@
 #include "lib/study/nearest_vertex.h"
 #include "lib/study/newton.h"
 #include "lib/study/through_internal.h"
+#include "lib/study/variant_internal.h"
 #include "lib/trace/trace.h"
 
 namespace sagitta::study {
@@ -85,21 +87,10 @@ prescription::Shape shape_of_points(CloudPointer cloud, const Variant& variant, 
   return shape;
 }
 
-std::vector<std::string> interpolations() {
-  const auto& keys = surface::Facets::keys;
-  const auto key = std::find_if(keys.begin(), keys.end(), [](const numerics::Key& one) { return one.name == "interpolation"; });
-  return numerics::words_of(key->choices);
-}
-
-std::string first_error(const prescription::Findings& findings) {
-  for (const auto& finding : findings.all())
-    if (finding.severity == prescription::Severity::error) return prescription::format(finding);
-  return "the system has no scene";
-}
-
 struct SurfaceTimes {
   Spread processor_ns, wall_ns;
   std::int64_t rays = 0;
+  double launching_ns = 0;  // a ray, by the clock: launched and brought to the surface
 };
 
 // `batch_size` rays at a time; of a way that takes long, as many batches as `seconds` allow.
@@ -107,7 +98,9 @@ SurfaceTimes time_surface(const View& view, const Variant& variant, const Throug
   const Clocked clocked = variant.threads == 1 ? Clocked::this_thread : Clocked::process;
   const std::int64_t batches = variant.threads == 1 ? 1 : 64;
   std::int64_t count = 0;
+  double launching_s = 0;  // of the last run
   const auto run = [&] {
+    const Times start = times_now(clocked);
     trace::PupilStream stream(variant.pattern, variant.rays);
     Times total;
     count = 0;
@@ -128,10 +121,10 @@ SurfaceTimes time_surface(const View& view, const Variant& variant, const Throug
       }
       total = total + (times_now(clocked) - before);
     }
+    launching_s = (times_now(clocked) - start).wall - total.wall;
     return total;
   };
-  const double first = run().wall;  // the caches are warm from here on
-  const int passes = static_cast<int>(std::clamp(2e-3 / first, 1.0, 1000.0)), runs = first < 0.5 ? 7 : 3;
+  const auto [runs, passes] = tracing_repeats(run().wall);  // the caches are warm from here on
   std::vector<double> processor, wall;
   for (int i = 0; i < runs; ++i) {
     Times total;
@@ -140,25 +133,24 @@ SurfaceTimes time_surface(const View& view, const Variant& variant, const Throug
     processor.push_back(total.processor * per_ray);
     wall.push_back(total.wall * per_ray);
   }
-  return {spread_of(processor), spread_of(wall), count};
+  return {spread_of(processor), spread_of(wall), count, 1e9 * launching_s / static_cast<double>(count)};
 }
 
 struct Prepared {
   scene::CompileResult compiled;
   Spread processor_s, wall_s;
 };
-Prepared prepare(const prescription::Model& model) {
+Prepared prepare(const prescription::Model& model, int repeats) {
   Prepared result;
   std::vector<double> processor, wall;
-  double total = 0;
-  for (int run = 0; run < 3 || (run < 7 && total < 0.1); ++run) {
+  for (int run = 0, runs = 1; run < runs; ++run) {
     result.compiled = {};
     const Times before = times_now(Clocked::process);
     result.compiled = scene::compile(model);
     const Times taken = times_now(Clocked::process) - before;
     processor.push_back(taken.processor);
     wall.push_back(taken.wall);
-    total += taken.wall;
+    runs = preparation_repeats(wall.front(), repeats);
   }
   result.processor_s = spread_of(processor);
   result.wall_s = spread_of(wall);
@@ -185,6 +177,18 @@ struct RoughCloud {
 
 }  // namespace
 
+std::vector<std::string> interpolations() {
+  const auto& keys = surface::Facets::keys;
+  const auto key = std::find_if(keys.begin(), keys.end(), [](const numerics::Key& one) { return one.name == "interpolation"; });
+  return numerics::words_of(key->choices);
+}
+
+std::string first_error(const prescription::Findings& findings) {
+  for (const auto& finding : findings.all())
+    if (finding.severity == prescription::Severity::error) return prescription::format(finding);
+  return "the system has no scene";
+}
+
 struct Subject::Parts {
   prescription::Model model;
   int number;
@@ -192,7 +196,7 @@ struct Subject::Parts {
   std::optional<scene::Scene> scene;  // of the system as prescribed
   std::string reason;
   double beam_radius = nan;
-  std::optional<Truth> truth;
+  std::optional<Truth> clean_truth, rough_truth;
   std::optional<RoughCloud> rough_cloud;
   std::optional<analysis::WavefrontResult> wavefront;
 
@@ -208,22 +212,22 @@ struct Subject::Parts {
     if (!(noise.rms_um > 0)) return std::nullopt;
     return Roughness(noise.rms_um * 1e-3, noise.correlation_length_um * 1e-3, seed);
   }
-  CloudPointer cloud(const Variant& variant) {
-    if (!(variant.noise.rms_um > 0)) return std::make_shared<const prescription::PointCloud>(new_cloud(variant));
+  CloudPointer cloud(const Variant& variant, int thread_count = 0) {
+    if (!(variant.noise.rms_um > 0)) return std::make_shared<const prescription::PointCloud>(new_cloud(variant, thread_count));
     const bool is_known = rough_cloud && rough_cloud->arrangement == variant.arrangement && rough_cloud->noise == variant.noise &&
                           rough_cloud->seed == variant.seed && rough_cloud->radius == radius(variant);
     if (is_known) return rough_cloud->cloud;
     rough_cloud.reset();
     rough_cloud = RoughCloud{variant.arrangement, variant.noise, variant.seed, radius(variant),
-                             std::make_shared<const prescription::PointCloud>(new_cloud(variant))};
+                             std::make_shared<const prescription::PointCloud>(new_cloud(variant, thread_count))};
     return rough_cloud->cloud;
   }
-  prescription::PointCloud new_cloud(const Variant& variant) const {
+  prescription::PointCloud new_cloud(const Variant& variant, int thread_count) const {
     prescription::PointCloud result;
     result.file = fmt::format("{} points", name_of(variant.arrangement.kind));
     const auto sites = sites_over_disc(variant.arrangement, radius(variant), variant.seed);
     const auto rough = roughness(variant.noise, variant.seed);
-    const std::vector<double> above = rough ? heights(*rough, sites, 0) : std::vector<double>(sites.size(), 0.0);
+    const std::vector<double> above = rough ? heights(*rough, sites, thread_count) : std::vector<double>(sites.size(), 0.0);
     result.points.reserve(sites.size());
     std::visit([&](const auto& shape) {
       for (std::size_t i = 0; i < sites.size(); ++i)
@@ -233,9 +237,11 @@ struct Subject::Parts {
   }
   const Truth& truth_of(const Variant& variant, int thread_count = 0) {
     const Noise noise = variant.is_against_clean ? Noise{} : variant.noise;
+    const bool is_rough = noise.rms_um > 0;
+    std::optional<Truth>& truth = is_rough ? rough_truth : clean_truth;
     const std::int64_t compared = std::min(variant.rays, variant.most_compared);
-    const bool is_known = truth && truth->noise == noise && (truth->seed == variant.seed || !(noise.rms_um > 0)) &&
-                          truth->pattern.kind == variant.pattern.kind && truth->pattern.seed == variant.pattern.seed && truth->compared == compared;
+    const bool is_known = truth && truth->pattern.kind == variant.pattern.kind && truth->pattern.seed == variant.pattern.seed && truth->compared == compared &&
+                          (!is_rough || (truth->noise == noise && truth->seed == variant.seed));
     if (is_known) return *truth;
     truth = Truth{noise, variant.seed, variant.pattern, compared, trace::pupil_points(variant.pattern, compared), {}};
     const auto rough = roughness(noise, variant.seed);
@@ -246,7 +252,7 @@ struct Subject::Parts {
 };
 
 Subject::Subject(prescription::Model system, int surface_number, std::size_t field)
-    : parts_(new Parts{std::move(system), surface_number, field, {}, {}, nan, {}, {}, {}}) {
+    : parts_(new Parts{std::move(system), surface_number, field, {}, {}, nan, {}, {}, {}, {}}) {
   Parts& parts = *parts_;
   scene::CompileResult compiled = scene::compile(parts.model);
   if (!compiled.scene) parts.reason = first_error(compiled.findings);
@@ -264,8 +270,24 @@ Subject::Subject(Subject&&) noexcept = default;
 
 double Subject::beam_radius() const { return parts_->beam_radius; }
 
+double Subject::point_count(const Variant& variant) const {
+  const Arrangement& arrangement = variant.arrangement;
+  if (!parts_->reason.empty() || variant.interpolation == Variant::as_prescribed) return 0;
+  if (arrangement.rings > 0) return static_cast<double>(arrangement.rings) * arrangement.meridians;
+  return arrangement.points_per_mm2 * std::numbers::pi * std::pow(parts_->radius(variant), 2);
+}
+
 void Subject::know_truth(const Variant& variant, int thread_count) {
   if (parts_->reason.empty() && variant.rays >= 1) parts_->truth_of(variant, thread_count);
+}
+
+void Subject::know_rough_cloud(const Variant& variant, int thread_count) {
+  if (!parts_->reason.empty() || variant.interpolation == Variant::as_prescribed || !(variant.noise.rms_um > 0)) return;
+  try {
+    parts_->cloud(variant, thread_count);
+  } catch (const std::bad_alloc&) {
+    parts_->rough_cloud.reset();
+  }
 }
 
 prescription::PointCloud Subject::cloud_of(const Variant& variant) {
@@ -289,13 +311,15 @@ Measured Subject::measure(const Variant& variant) {
   Row row;
   prescription::Model model = parts.model;
   if (is_sampled) {
+    const Times before = times_now(Clocked::process);
     CloudPointer cloud = parts.cloud(variant);
+    row.sampling_s = (times_now(Clocked::process) - before).wall;
     row.cloud_radius_mm = parts.radius(variant);
     row.points = static_cast<std::int64_t>(cloud->points.size());
     row.points_per_mm2 = static_cast<double>(row.points) / (std::numbers::pi * row.cloud_radius_mm * row.cloud_radius_mm);
     model.surfaces[at(parts.number)].shape = shape_of_points(std::move(cloud), variant, parts.spacing(variant));
   }
-  Prepared prepared = prepare(model);
+  Prepared prepared = prepare(model, variant.prepare_repeats);
   if (!prepared.compiled.scene) return {{}, first_error(prepared.compiled.findings)};
   row.prepare_s = prepared.processor_s;
   row.prepare_wall_s = prepared.wall_s;
@@ -311,6 +335,7 @@ Measured Subject::measure(const Variant& variant) {
   }
 
   std::int64_t looks = 0;
+  int looks_most = 0;
   const auto way = [&](bool counts_looks) -> Through {
     if (nearest) return [&](trace::RayBatch& rays) { view.pass(rays, [&](const auto& p, const auto& d) { return nearest->meet(p, d); }); };
     if (!is_to_tolerance) return [&](trace::RayBatch& rays) { trace::trace_surface(view.scene, view.wavelength(), view.number, rays); };
@@ -318,22 +343,29 @@ Measured Subject::measure(const Variant& variant) {
       std::visit([&](const auto& shape) {
         view.pass(rays, [&](const auto& p, const auto& d) {
           const NewtonHit hit = meet_to_tolerance(shape, p, d, variant.tolerance_mm);
-          if (counts_looks) looks += hit.looks;
+          if (counts_looks) looks += hit.looks, looks_most = std::max(looks_most, hit.looks);
           return hit.crossing;
         });
       }, view.shape());
     };
   };
+  const Times comparison = times_now(Clocked::process);
   trace::RayBatch rays = view.before_surface(truth.pupil);
   row.compared = static_cast<std::int64_t>(rays.size());
   way(true)(rays);
-  if (is_to_tolerance) row.looks_per_ray = static_cast<double>(looks) / static_cast<double>(row.compared);
+  if (is_to_tolerance) {
+    row.looks_per_ray = static_cast<double>(looks) / static_cast<double>(row.compared);
+    row.looks_most = looks_most;
+  }
   row.surface = surface_errors(rays, truth.rays.rays->at_surface);
   view.to_image(rays);
   row.spot = spot_errors(rays, truth.rays.rays->at_image);
+  row.comparing_s = (times_now(Clocked::process) - comparison).wall;
 
-  const SurfaceTimes times = time_surface(view, variant, way(false), nearest ? 64 : 4096, nearest ? 0.25 : std::numeric_limits<double>::infinity());
+  const SurfaceTimes times = time_surface(view, variant, way(false), nearest ? 64 : 4096, nearest ? longest_search_s : std::numeric_limits<double>::infinity());
   row.rays = times.rays;
+  row.threads = numerics::thread_count_of(variant.threads);
+  row.launching_ns_per_ray = times.launching_ns;
   row.ns_per_ray = times.processor_ns;
   row.wall_ns_per_ray = times.wall_ns;
 

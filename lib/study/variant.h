@@ -12,7 +12,7 @@
 //
 // Times. Preparation: compiling the variant's scene, all of its points (process time, for several threads may share it). Tracing: the rays
 // through the surface under study alone, in batches that stay in the second-level cache; launching them and the surfaces
-// before are not counted. Runs are repeated at least three times, short ones more often. The nearest vertex is timed on as many of the rays as a quarter of a
+// before are not counted. Runs are repeated, preparation as often as asked for, tracing at least three times, short ones more often. The nearest vertex is timed on as many of the rays as a quarter of a
 // second allows.
 #pragma once
 
@@ -54,6 +54,7 @@ struct Variant {
   std::int64_t rays = 10000;             // at least; all are timed
   std::int64_t most_compared = 100000;   // about so many are compared with the truth: a pattern of its own where `rays` is larger
   int threads = 1;                       // 0: as many as the machine runs
+  int prepare_repeats = 3;               // at least
   double tolerance_mm = 0;               // as_prescribed only: Newton's method to this |f| (newton.h); 0: the tracer's own way
   bool want_wavefront = true;
 };
@@ -67,9 +68,12 @@ struct Row {
   SpotErrors spot;
   double wavefront_rms_waves = std::numeric_limits<double>::quiet_NaN();  // of the difference, tilt left in; NaN where there is none
   double wavefront_rms_without_tilt_waves = std::numeric_limits<double>::quiet_NaN();
-  double looks_per_ray = std::numeric_limits<double>::quiet_NaN();        // of Newton's method to a tolerance
+  double looks_per_ray = std::numeric_limits<double>::quiet_NaN();        // of Newton's method to a tolerance, in the mean
+  double looks_most = std::numeric_limits<double>::quiet_NaN();           // of the ray that takes most
   Spread prepare_s, prepare_wall_s;
   Spread ns_per_ray, wall_ns_per_ray;    // processor's, of all threads together; the clock's
+  int threads = 1;                       // that the variant's rays are shared among
+  double sampling_s = 0, comparing_s = 0, launching_ns_per_ray = 0;  // by the clock, beside what is measured: points, comparison, launching (price.h)
 };
 
 struct Measured {
@@ -77,8 +81,8 @@ struct Measured {
   std::string reason;  // why there is none
 };
 
-// A system and its surface under study. Keeps the truth and the rough cloud of the last variant: variants that share them (noise, seed, and pattern and
-// rays or arrangement) are best measured one after the other.
+// A system and its surface under study. Keeps the rough cloud and the truth of the last variant, and beside a rough truth the last one without
+// roughness: variants that share them (noise, seed, and pattern and rays or arrangement) are best measured one after the other.
 class Subject {
  public:
   // The field counts from 0, the surface from 1; the wavelength is the primary one.
@@ -89,8 +93,12 @@ class Subject {
   Measured measure(const Variant& variant);
   // The exact rays of a variant beforehand, by so many threads (0: as many as the machine runs): a process that is forked from this one has them.
   void know_truth(const Variant& variant, int thread_count);
+  // Likewise the points of a rough variant. Without the memory for them there are none, nor is there an error before measure().
+  void know_rough_cloud(const Variant& variant, int thread_count);
   // The points of a variant, as a cloud in memory; empty where there are none, or measure() has a reason.
   prescription::PointCloud cloud_of(const Variant& variant);
+  // How many points a variant has, about; 0 of a surface as prescribed.
+  double point_count(const Variant& variant) const;
   // The beam's radius on the surface, mm; NaN where no ray of the rim comes there.
   double beam_radius() const;
 

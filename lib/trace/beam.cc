@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lib/trace/beam.h"
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -25,6 +26,12 @@ scene::Beam beam_of(RaySource source) {
     });
     return lines;
   };
+}
+
+bool leaves_a_part(const std::vector<scene::CloudPart>& parts, const StatusCounts& rays) {
+  return std::any_of(parts.begin(), parts.end(), [&](const scene::CloudPart& part) {
+    return rays.endings.contains(ending(part.surface, surface::Status::outside_data));
+  });
 }
 
 }  // namespace sagitta::trace

@@ -22,4 +22,8 @@ using RaySource = std::function<void(const scene::Scene& scene, const std::funct
 // that is clipped would say nothing of the rays beside it.
 scene::Beam beam_of(RaySource source);
 
+// Whether a ray ended as outside_data on a cloud of which a part was triangulated: then the scene is to be loaded and traced
+// again, without a beam.
+bool leaves_a_part(const std::vector<scene::CloudPart>& parts, const StatusCounts& rays);
+
 }  // namespace sagitta::trace

@@ -51,6 +51,17 @@ TEST(Version, names_the_instructions_that_are_forced) {
   EXPECT_EQ(misspelt.err, "sagitta: SAGITTA_ISA is 'x86-64-v2'\n  hint: it may be x86-64, x86-64-v3, x86-64-v4\n");
 }
 
+// `--version` and `--help` on a full disk ended with 0 (2026-11-22): CLI11 prints them on its way out.
+TEST(Program, says_that_standard_output_is_full) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full on this machine";
+  const Folder folder;
+  for (const char* arguments : {"--version", "--help", "check systems/cooke-triplet.yaml", "rays systems/cooke-triplet.yaml"}) {
+    const Outcome run = run_program(std::string(arguments) + " >/dev/full 2>'" + folder.path("err") + "' #", "cd '" SAGITTA_SOURCE_DIR "' && ");
+    EXPECT_EQ(run.status, 1) << arguments;
+    EXPECT_TRUE(read_text(folder.path("err")).starts_with("sagitta: standard output cannot be written: ")) << arguments << '\n' << read_text(folder.path("err"));
+  }
+}
+
 TEST(StartUp, loads_the_libraries_of_pictures_with_the_first_picture) {
   const Folder folder;
   const auto loaded_by = [](const std::string& arguments) { return run_program(arguments, "LD_DEBUG=files ").err; };

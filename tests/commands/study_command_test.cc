@@ -42,9 +42,9 @@ const std::string few = "variants:\n  - {points_per_mm2: [4, 16, 64], rays: 300}
 
 TEST(StudyCommand, writes_a_row_for_every_variant_a_page_and_plots) {
   const Folder folder;
-  const Outcome run = run_study(folder, few + "paper:\n  - {where: {points_per_mm2: 16}, angle_mean_arcmin: 1, note: made up}\nnotes: The end.\n");
+  const Outcome run = run_study(folder, few + "paper:\n  - {where: {points_per_mm2: 16}, angle_mean_arcmin: 1, note: made up}\nnotes: |-\n  Not *yet*.\n  - The end.\n");
   ASSERT_EQ(run.status, 0) << run.err;
-  EXPECT_EQ(run.err, "");
+  EXPECT_THAT(run.err, testing::MatchesRegex("sagitta study: 4 variants to measure, about [0-9]+ (s|min)\n"));
   EXPECT_THAT(run.out, HasSubstr("A tiny study: 4 of 4 variants measured, 0 of them before"));
 
   const auto lines = lines_of(read_text(folder.path("out/study.csv")));
@@ -73,7 +73,7 @@ TEST(StudyCommand, writes_a_row_for_every_variant_a_page_and_plots) {
   EXPECT_LT(found["rows"][3]["distance_rms_um"].get<double>(), 1e-10);
 
   const std::string page = read_text(folder.path("out/study.md"));
-  for (const char* text : {"# A tiny study\n", "What it is of.", "4 of 4 variants", "| linear regular 16 per mm² |", "## Orders", "| linear regular | distance |", "| made up |", "The end."})
+  for (const char* text : {"# A tiny study\n", "What it is of.", "4 of 4 variants", "| linear regular 16 per mm² |", "## Orders", "| linear regular | distance |", "| made up |", "\n\nNot \\*yet\\*.\n\n- The end.\n"})
     EXPECT_THAT(page, HasSubstr(text));
   int plots = 0;
   for (std::size_t at = 0; (at = page.find("](", at)) != std::string::npos; ++plots) {
@@ -102,6 +102,76 @@ TEST(StudyCommand, keeps_finished_rows_and_measures_what_is_new) {
   const Outcome changed = run_program("study '" + folder.path("study.yaml") + "' -o '" + folder.path("out") + "'");
   EXPECT_EQ(changed.status, 0);
   EXPECT_THAT(changed.err, Not(HasSubstr("kept")));
+}
+
+// The cells of the row of a Markdown table that begins so, from its second column on.
+std::vector<std::string> cells_of(const std::string& page, const std::string& first) {
+  for (const std::string& line : lines_of(page)) {
+    if (!line.starts_with("| " + first + " |")) continue;
+    std::vector<std::string> cells;
+    for (std::size_t at = line.find(" | ") + 3, end; (end = line.find(" |", at)) != std::string::npos; at = end + 3) cells.push_back(line.substr(at, end - at));
+    return cells;
+  }
+  return {};
+}
+
+// Of each density three clouds: three rows of study.csv, one line of the page, with the mean and the standard deviation of its numbers, and one point of a fit.
+TEST(StudyCommand, shows_variants_that_differ_in_the_seed_alone_as_their_mean) {
+  const Folder folder;
+  const Outcome run = run_study(folder,
+                                "variants:\n  - {points_per_mm2: [4, 16, 64], rays: 300, arrangement: random, seed: [1, 2, 3]}\n  - {points_per_mm2: 16, rays: 300, seed: 2}\n"
+                                "  - {points_per_mm2: 1e7, rays: 300, arrangement: jittered, seed: [1, 2]}\n"
+                                "paper:\n  - {where: {points_per_mm2: 16, arrangement: random}, spot_rms_error_percent: 1}\n",
+                                "ulimit -v 1000000; ");
+#if defined(__SANITIZE_ADDRESS__)
+  GTEST_SKIP() << "AddressSanitizer takes more address space than the limit";
+#endif
+  EXPECT_EQ(run.status, 1);
+  const json rows = json::parse(read_text(folder.path("out/study.json")))["rows"];
+  ASSERT_EQ(rows.size(), 12u);
+  const std::string page = read_text(folder.path("out/study.md"));
+  EXPECT_THAT(page, HasSubstr("| variant | seeds | points | rays | distance, mean µm |"));
+  struct Expected {
+    double mean = 0, deviation = 0;
+  };
+  const auto expected_of = [&](std::size_t first, const char* key) {
+    Expected result;
+    for (std::size_t i = 0; i < 3; ++i) result.mean += rows[first + i][key].get<double>() / 3;
+    for (std::size_t i = 0; i < 3; ++i) result.deviation += std::pow(rows[first + i][key].get<double>() - result.mean, 2) / 2;
+    result.deviation = std::sqrt(result.deviation);
+    return result;
+  };
+  std::vector<double> spacings, angles;
+  std::size_t first = 0;
+  for (const char* density : {"4", "16", "64"}) {
+    const auto cells = cells_of(page, std::string("linear random ") + density + " per mm²");
+    ASSERT_GE(cells.size(), 5u) << density;
+    EXPECT_EQ(cells[0], "3");
+    EXPECT_EQ(cells[1], std::to_string(rows[first]["points"].get<int>()));
+    EXPECT_EQ(cells[2], std::to_string(rows[first]["rays"].get<int>()));
+    const Expected distance = expected_of(first, "distance_mean_um");
+    const std::size_t sign = cells[3].find(" ± ");
+    ASSERT_NE(sign, std::string::npos) << cells[3];
+    EXPECT_NEAR(std::stod(cells[3].substr(sign + 4)), distance.deviation, .051 * distance.deviation);  // two digits; the sign is two bytes
+    EXPECT_NEAR(std::stod(cells[3]), distance.mean, distance.deviation / 2);                             // to the first of them
+    spacings.push_back(std::log(rows[first]["points_per_mm2"].get<double>()) / -2);
+    angles.push_back(std::log(expected_of(first, "angle_rms_arcmin").mean));
+    first += 3;
+  }
+  EXPECT_EQ(page.find("seed 1 |"), std::string::npos);
+  EXPECT_EQ(cells_of(page, "linear regular 16 per mm² seed 2").at(0), "1");  // alone: under its own name, without a deviation
+  EXPECT_EQ(cells_of(page, "linear regular 16 per mm² seed 2").at(3).find("±"), std::string::npos);
+  EXPECT_THAT(page, HasSubstr("- linear jittered 10000000 per mm² seed 1: not enough memory"));
+  EXPECT_THAT(page, HasSubstr("- linear jittered 10000000 per mm² seed 2: not enough memory"));
+  // Equal steps of the spacing: the slope of least squares is that from the first mean to the last.
+  EXPECT_NEAR(std::stod(cells_of(page, "linear random").at(1)), (angles[2] - angles[0]) / (spacings[2] - spacings[0]), 5.1e-4);
+  EXPECT_EQ(cells_of(page, "linear random").at(3), "3");
+  const Expected spot = expected_of(3, "spot_rms_error_percent");
+  const auto reference = cells_of(page, "random, points_per_mm2 16");
+  ASSERT_GE(reference.size(), 5u);
+  EXPECT_NEAR(std::stod(reference[2]), spot.mean, spot.deviation / 2);
+  EXPECT_NEAR(std::stod(reference[3]), 100 * (spot.mean - 1), .051);
+  EXPECT_EQ(reference[4], "3");
 }
 
 // SIGKILL while it measures: what had been finished is kept, whole.
@@ -168,6 +238,60 @@ TEST(StudyCommand, a_variant_that_fails_takes_no_other_with_it) {
   EXPECT_TRUE(found["rows"][1]["distance_rms_um"].is_null());
   EXPECT_GT(found["rows"][2]["distance_rms_um"].get<double>(), 0);
   EXPECT_THAT(read_text(folder.path("out/study.md")), HasSubstr("- linear regular 10000000 per mm²: not enough memory"));
+}
+
+TEST(StudyCommand, variants_may_be_of_other_surfaces_and_fields) {
+  const Folder folder;
+  folder.file("two.yaml", "sagitta: 1\nname: Two\nwavelengths_nm: [855]\naperture: {entrance_pupil_diameter_mm: 4}\nfields: {angles_deg: [[0, 0], [0, 20]]}\nsurfaces:\n"
+                          "  - {name: front, stop: true, conic: {radius_mm: 20, conic_constant: -3}, thickness_mm: 2, medium: {index: 1.5}}\n"
+                          "  - {name: back, conic: {radius_mm: -15, conic_constant: -9}, thickness_mm: 20}\n  - {name: image}\n");
+  const std::string study = folder.file("study.yaml", "sagitta_study: 1\nname: two\nsystem: two.yaml\nsurface: front\nvariants:\n"
+                                                      "  - {interpolation: analytic, field: [0, 1], tolerance_mm: [0, 1e-3, 1e-13], rays: 300}\n"
+                                                      "  - {interpolation: analytic, surface: back, field: 1, tolerance_mm: [0, 1e-3, 1e-13], rays: 300}\n");
+  const Outcome run = run_program("study '" + study + "' -o '" + folder.path("out") + "' --threads 1");
+  ASSERT_EQ(run.status, 0) << run.err;
+  const json found = json::parse(read_text(folder.path("out/study.json")));
+  ASSERT_EQ(found["rows"].size(), 9u);
+  EXPECT_EQ(found["rows"][0]["variant"], "front 0°, as traced");
+  EXPECT_EQ(found["rows"][8]["variant"], "back 20°, Newton to 1e-13 mm");
+  EXPECT_EQ(found["rows"][8]["surface"], "back");
+  EXPECT_EQ(found["rows"][8]["field"], 1);
+  for (const json& row : found["rows"]) {
+    EXPECT_EQ(row["only_one_finds"], 0) << row["variant"];
+    const double tolerance = row["tolerance"].get<double>();
+    EXPECT_EQ(row["looks_most"].is_null(), tolerance == 0) << row["variant"];
+    if (tolerance > 0) {
+      EXPECT_GE(row["looks_most"].get<double>(), row["looks_per_ray"].get<double>()) << row["variant"];
+    }
+    // |f| <= tolerance, and f falls along the ray by its cosine with z less the slope, .6 at least; beside rounding
+    EXPECT_LE(row["distance_max_um"].get<double>(), 1e3 * (tolerance / .6 + 1e-14)) << row["variant"];
+  }
+  // Along z two looks are enough; under 20 degrees the second leaves some 1e-6 mm.
+  EXPECT_EQ(found["rows"][2]["looks_most"], 2);
+  EXPECT_GT(found["rows"][5]["looks_most"].get<double>(), 2);
+  EXPECT_NE(found["rows"][7]["distance_max_um"], found["rows"][4]["distance_max_um"]);  // of other surfaces
+  const std::string page = read_text(folder.path("out/study.md"));
+  EXPECT_THAT(page, HasSubstr("System: Two, surfaces 1 (front), 2 (back), fields 0, 1, 855 nm."));
+  for (const char* plot : {"error-tolerance-distance", "error-tolerance-angle", "looks-tolerance", "looks-most-tolerance"}) EXPECT_THAT(page, HasSubstr(std::string(plot) + ".svg"));
+}
+
+// The exact rays of the first row are 1e5 times two places and directions of long doubles, 20 MiB; the second begins when they are gone. Its 100 rays
+// and batches of 4096 are a few hundred KiB, and pages of code and stacks some MiB. The third's 2e5 points are 24 bytes each and their 4e5 facets 64.
+TEST(StudyCommand, memory_of_a_variant_is_its_own) {
+#if defined(__SANITIZE_ADDRESS__)
+  GTEST_SKIP() << "AddressSanitizer keeps freed memory";
+#endif
+  const Folder folder;
+  const Outcome run = run_study(folder, "variants:\n  - {interpolation: analytic, pattern: random:1, rays: 100000}\n  - {interpolation: analytic, pattern: random:2, rays: 100}\n"
+                                        "  - {points_per_mm2: 16000, pattern: random:2, rays: 100}\n");
+  ASSERT_EQ(run.status, 0) << run.err;
+  const json rows = json::parse(read_text(folder.path("out/study.json")))["rows"];
+  ASSERT_EQ(rows.size(), 3u);
+  const auto mib = [&](int row, const char* key) { return rows[static_cast<std::size_t>(row)][key].get<double>(); };
+  EXPECT_GT(mib(0, "peak_mib") - mib(0, "own_mib"), mib(1, "peak_mib") - mib(1, "own_mib") + 18);
+  EXPECT_LT(mib(1, "own_mib"), 6);
+  EXPECT_GT(rows[2]["points"].get<double>(), 2e5);
+  EXPECT_GT(mib(2, "own_mib"), 2e5 * (24 + 2 * 64) / 0x1p20);
 }
 
 TEST(StudyCommand, says_what_is_wrong_and_writes_nothing) {

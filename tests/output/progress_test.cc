@@ -118,5 +118,13 @@ TEST(Progress, ManyThreadsMayAdvanceIt) {
   EXPECT_THAT(terminal.text(), AllOf(StartsWith("\rtracing"), EndsWith("\rtracing  100 %")));
 }
 
+TEST(Progress, SaysDurationsInWholeUnitsRoundedUp) {
+  EXPECT_EQ(duration_in_words(0.2), "1 s");
+  EXPECT_EQ(duration_in_words(44.2), "45 s");
+  EXPECT_EQ(duration_in_words(99.9), "100 s");
+  EXPECT_EQ(duration_in_words(100), "2 min");
+  EXPECT_EQ(duration_in_words(241), "5 min");
+}
+
 }  // namespace
 }  // namespace sagitta::output

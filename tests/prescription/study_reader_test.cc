@@ -46,6 +46,16 @@ TEST(StudyReader, RoughnessIsMultipliedOutToo) {
   EXPECT_THAT(found, ElementsAre("0 1000 noisy 1 100", "0 1000 noisy 2 100", "0.1 1 clean 1 100", "0.1 1 clean 2 100", "0.1 1000 clean 1 100", "0.1 1000 clean 2 100"));
 }
 
+TEST(StudyReader, VariantsNameTheirSurfaceAndFieldOrHaveTheStudys) {
+  const TemporaryFolder folder;
+  folder.write("lens.yaml", "fields: {angles_deg: [[0, 0], [0, 5], [0, 10]]}\n" + lens);
+  const auto result = read_study(folder.write("study.yaml", head + "field: 1\nvariants:\n  - {interpolation: analytic, surface: [image, front], field: [2, 0]}\n  - interpolation: analytic\n"));
+  ASSERT_TRUE(result.study) << text_of(result.findings);
+  std::vector<std::string> found;
+  for (const Parameters& one : result.study->variants) found.push_back(fmt::format("{} {} {}", one.text("surface"), surface_number_of(*result.study, one), field_of(one)));
+  EXPECT_THAT(found, ElementsAre("image 2 2", "image 2 0", "front 1 2", "front 1 0", "front 1 1"));
+}
+
 TEST(StudyReader, KnowsEveryInterpolationOfDelaunay) {
   const auto of = [](KeyTable keys) {
     for (const numerics::Key& key : keys)
@@ -100,6 +110,9 @@ INSTANTIATE_TEST_SUITE_P(
                 {"study.yaml:2:7: error: name must be of at most 60 letters, digits, - and _, not 'a b/c'\n  hint: title takes any text"}},
         Mistake{"surface", "sagitta_study: 1\nname: tiny\nsystem: lens.yaml\nsurface: frond\nfield: 1\nvariants:\n  - {interpolation: analytic}\n",
                 {"study.yaml:4:10: error: there is no surface 'frond' in lens.yaml\n  hint: did you mean 'front'?", "study.yaml:5:8: error: there is no field 1"}},
+        Mistake{"surface_of_a_variant", head + "variants:\n  - {interpolation: analytic, surface: [image, frond], field: 0}\n  - {interpolation: analytic, field: [0, 1]}\n  - {interpolation: analytic, surface: '', field: -1}\n",
+                {"study.yaml:6:48: error: there is no surface 'frond' in lens.yaml\n  hint: did you mean 'front'?", "study.yaml:7:42: error: there is no field 1\n  hint: the system has 0 to 0",
+                 "study.yaml:8:40: error: surface must be a text", "study.yaml:8:51: error: field must be a whole number"}},
         Mistake{"file", "sagitta_study: 1\nname: tiny\nsystem: lense.yaml\nsurface: front\nvariants:\n  - {interpolation: analytic}\n",
                 {"study.yaml:3:9: error: there is no file 'lense.yaml'\n  hint: looked for in"}},
         Mistake{"density", head + "variants:\n  - {interpolation: c1}\n  - {points_per_mm: 2, points_per_mm2: 4}\n",

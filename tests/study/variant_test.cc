@@ -113,6 +113,63 @@ TEST(Measured, RoughnessCountsAgainstTheCleanSurface) {
   EXPECT_NEAR(other_seed.surface.distance_um.mean / smooth.surface.distance_um.mean, 1, .15);  // against its own surface; 500 rays
 }
 
+// Truths and rough points that a subject keeps, or has beforehand, are those that it would make: variants that share some of them, in an order in which
+// each comes again after others.
+TEST(Measured, WhatASubjectKeepsIsWhatItWouldMake) {
+  std::vector<Variant> variants;
+  for (const std::uint64_t seed : {1, 2})
+    for (const double length : {1000.0, 4000.0})
+      for (const double density : {4.0, 9.0})
+        for (const bool is_against_clean : {false, true}) {
+          Variant variant = linear(density);
+          variant.rays = 300;
+          variant.noise = {2, length};
+          variant.is_against_clean = is_against_clean;
+          variant.seed = seed;
+          variant.prepare_repeats = 1;
+          variants.push_back(variant);
+        }
+  for (const std::uint64_t seed : {1, 2}) {  // nothing but the seed changes
+    Variant variant = variants.back();
+    variant.is_against_clean = false;
+    variant.seed = seed;
+    variants.push_back(variant);
+  }
+  Variant clean = linear(4);
+  clean.rays = 300;
+  variants.push_back(clean);
+  variants.push_back(variants.front());
+  clean.interpolation = Variant::as_prescribed;
+  clean.noise = {2, 1000};  // no points, but a rough truth
+  variants.push_back(clean);
+
+  study::Subject keeping(paper_lens(), 1), knowing(paper_lens(), 1);
+  for (const Variant& variant : variants) {
+    study::Subject fresh(paper_lens(), 1);
+    const Row expected = row_of(fresh, variant), kept = row_of(keeping, variant);
+    knowing.know_truth(variant, 2);
+    knowing.know_rough_cloud(variant, 2);
+    const Row known = row_of(knowing, variant);
+    for (const Row& row : {kept, known}) {
+      EXPECT_EQ(row.points, expected.points);
+      EXPECT_EQ(row.surface.distance_um.mean, expected.surface.distance_um.mean);
+      EXPECT_EQ(row.surface.angle_arcmin.rms, expected.surface.angle_arcmin.rms);
+      EXPECT_EQ(row.spot.true_rms_radius_um, expected.spot.true_rms_radius_um);
+    }
+    EXPECT_EQ(knowing.cloud_of(variant).points.size(), static_cast<std::size_t>(expected.points));
+  }
+}
+
+TEST(Measured, PreparationIsRepeatedAsOftenAsAskedFor) {
+  study::Subject subject(paper_lens(), 1);
+  Variant variant = linear(400);  // some .2 s: longer than what is repeated anyway
+  variant.rays = 100;
+  for (const int repeats : {1, 2, 3}) {
+    variant.prepare_repeats = repeats;
+    EXPECT_EQ(row_of(subject, variant).prepare_s.runs, repeats);
+  }
+}
+
 // The stop behind the surface: its image, the entrance pupil, depends on the curvature at the vertex, and a rough cloud has another one. Launched
 // by that, rays would come to places some 1e-3 of 12 mm away.
 TEST(Measured, BothSidesAreLaunchedByTheSystemAsPrescribed) {

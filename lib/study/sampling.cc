@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lib/study/sampling.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "lib/analysis/job.h"
+#include "lib/numerics/zernike_basis.h"
+#include "lib/scene/compile.h"
+#include "lib/study/variant_internal.h"
+#include "lib/surface/shapes.h"
+#include "lib/surface/status.h"
+#include "lib/trace/beam.h"
+
+namespace sagitta::study {
+namespace {
+
+using analysis::JobRequest;
+using analysis::JobResult;
+
+// Those that fill the pupil, the truth's first.
+constexpr const char* patterns[] = {"hexapolar", "square", "random:1"};
+constexpr int grids[] = {16, 24, 32, 48, 64, 96, 128, 192, 256, 384};
+constexpr double fit_weight = 500;  // of a sample of a wavefront: its share of the fit of Zernike terms, in surfaces
+// Whatever the budget: those that `trace` takes unless asked, and two finer.
+constexpr std::int64_t least_finest_rays = 100'000;
+constexpr int least_finest_grid = 128;
+
+std::vector<std::int64_t> ray_ladder(double most) {
+  std::vector<std::int64_t> rungs;
+  for (std::int64_t decade = 100;; decade *= 10)
+    for (const std::int64_t rung : {decade, 3 * decade}) {
+      if (static_cast<double>(rung) > most) return rungs;
+      rungs.push_back(rung);
+    }
+}
+
+double samples_of(int grid) { return std::numbers::pi * std::pow(grid / 2 - 1, 2); }  // about
+
+// A system compiled for its job: of large clouds a part, until a ray leaves it.
+class CompiledSystem {
+ public:
+  explicit CompiledSystem(const prescription::Model& model) : model_(model), compiled_(scene::compile(model, analysis::beam_of_job())) {}
+
+  struct Timed {
+    std::vector<JobResult> results;
+    Times times;
+  };
+  const scene::CompileResult& compiled() const { return compiled_; }
+  Timed run(const JobRequest& request) {
+    Timed run = timed(request);
+    const bool leaves = std::any_of(run.results.begin(), run.results.end(), [&](const JobResult& result) {
+      return trace::leaves_a_part(compiled_.parts, result.rays) || (result.wavefront && trace::leaves_a_part(compiled_.parts, result.wavefront->rays));
+    });
+    if (!leaves) return run;
+    compiled_ = scene::compile(model_);
+    return timed(request);
+  }
+
+ private:
+  Timed timed(const JobRequest& request) const {
+    const Times before = times_now(Clocked::process);
+    std::vector<JobResult> results = analysis::run_job(*compiled_.scene, request);
+    return {std::move(results), times_now(Clocked::process) - before};
+  }
+
+  const prescription::Model& model_;
+  scene::CompileResult compiled_;
+};
+
+Answers answers_of(const JobResult& result) {
+  Answers answers{result.field, result.wavelength, result.rays.total(), result.rays[surface::Status::ok], {}, {}, {}, {}, {}, {}};
+  if (result.spot && result.spot->rays[surface::Status::ok] > 0) answers.spot_rms_um = {result.spot->rms_radius * 1e3};
+  else if (result.spot) answers.no_spot = "no ray arrived";
+  if (!result.wavefront) return answers;
+  if (const auto& wavefront = result.wavefront->wavefront) {
+    answers.wavefront_rms_waves = {wavefront->rms_waves};
+    if (wavefront->zernike) answers.zernike_um = wavefront->zernike->coefficients;
+    else answers.no_zernike = "the samples do not determine the terms";
+  } else {
+    answers.no_wavefront = answers.no_zernike = result.wavefront->reason;
+  }
+  return answers;
+}
+
+// A long run counts as it is; before short ones, of which there are several, one warms the caches.
+Run measured(CompiledSystem& system, const JobRequest& request, const std::string& pattern) {
+  Run run{request.want_spot ? pattern : "", request.want_spot ? request.ray_count : 0, request.want_wavefront ? request.wavefront.size : 0, {}, {}, {}};
+  const CompiledSystem::Timed first = system.run(request);
+  for (const JobResult& result : first.results) run.answers.push_back(answers_of(result));
+  std::vector<double> processor, wall;
+  const auto add = [&](const Times& times) {
+    processor.push_back(times.processor);
+    wall.push_back(times.wall);
+  };
+  if (first.times.wall > 0.2) add(first.times);
+  else for (const int runs = first.times.wall < 0.01 ? 7 : 3; static_cast<int>(wall.size()) < runs;) add(system.run(request).times);
+  run.processor_s = spread_of(processor);
+  run.wall_s = spread_of(wall);
+  return run;
+}
+
+JobRequest job_of(const SamplingRequest& request, const char* pattern, std::int64_t rays, int grid) {
+  JobRequest job;
+  job.want_spot = rays > 0;
+  job.want_wavefront = grid > 0;
+  job.pattern = *trace::parse_pattern(pattern);
+  job.ray_count = rays;
+  job.spot_image_size = 2;  // none is looked at
+  job.wavefront.size = grid;
+  job.thread_count = request.thread_count;
+  return job;
+}
+
+double weight_of(const prescription::Surface& surface, const std::string& interpolation) {
+  if (!surface.shape.cloud) return 1;
+  return interpolation == "linear" || interpolation == "c1" ? 10 : 80;
+}
+
+// Of a ray and of a sample of a wavefront, for all fields and wavelengths.
+struct Prices {
+  double of_ray = 0, of_sample = 0;
+
+  Prices(const prescription::Model& system, double weights) {
+    const double tasks = static_cast<double>(system.fields.points.size() * system.wavelengths_nm.size());
+    of_ray = tasks * weights;
+    of_sample = tasks * (weights + fit_weight);
+  }
+  double of(std::int64_t rays, int grid) const {
+    constexpr double of_start = 5e6;  // short runs come several times
+    return of_start + static_cast<double>(rays) * of_ray + (grid > 0 ? samples_of(grid) * of_sample : 0);
+  }
+};
+
+const std::string& interpolation_of(const prescription::Surface& surface) {
+  static const std::string none;
+  return surface.shape.cloud ? surface.shape.parameters.text("interpolation") : none;
+}
+
+CloudRun measured_cloud(prescription::Model model, std::size_t at, const std::string& interpolation, const JobRequest& spots, const JobRequest& wavefronts) {
+  prescription::Surface& surface = model.surfaces[at];
+  std::string& own = surface.shape.parameters.texts["interpolation"];
+  CloudRun result{static_cast<int>(at) + 1, surface.name, interpolation, own == interpolation, {}, 0, {}, {}};
+  own = interpolation;
+  const Times before = times_now(Clocked::process);
+  CompiledSystem system(model);
+  result.prepare_s = (times_now(Clocked::process) - before).processor;
+  if (!system.compiled().scene) {
+    result.reason = first_error(system.compiled().findings);
+    return result;
+  }
+  result.spots = measured(system, spots, patterns[0]);
+  result.wavefronts = measured(system, wavefronts, patterns[0]);
+  return result;
+}
+
+}  // namespace
+
+Sampling sample_system(const prescription::Model& system, const SamplingRequest& request, const std::function<void(double)>& progress) {
+  Sampling sampling;
+  CompiledSystem compiled(system);
+  sampling.findings = compiled.compiled().findings;
+  if (!compiled.compiled().scene) return sampling;
+  for (const scene::Wavelength& wavelength : compiled.compiled().scene->wavelengths) sampling.wavelengths_um.push_back(wavelength.wavelength_um);
+
+  double weights = 0;
+  for (const prescription::Surface& surface : system.surfaces) weights += weight_of(surface, interpolation_of(surface));
+  const Prices prices(system, weights);
+  const auto rays = ray_ladder(std::min(static_cast<double>(request.most_rays), std::max(static_cast<double>(least_finest_rays), request.budget / prices.of_ray)));
+  std::vector<int> sizes;
+  for (const int grid : grids)
+    if (grid <= request.most_grid && (grid <= least_finest_grid || samples_of(grid) * prices.of_sample <= request.budget)) sizes.push_back(grid);
+
+  // The work is known beforehand, and so the share of it that is done.
+  struct Work {
+    double price;
+    std::function<void()> run;
+  };
+  std::vector<Work> work;
+  for (const char* pattern : patterns) {
+    const std::size_t at = sampling.spots.size();
+    sampling.spots.emplace_back();
+    for (const std::int64_t count : rays)
+      work.push_back({prices.of(count, 0), [&, at, pattern, count] { sampling.spots[at].push_back(measured(compiled, job_of(request, pattern, count, 0), pattern)); }});
+  }
+  for (const int grid : sizes)
+    work.push_back({prices.of(0, grid), [&, grid] { sampling.wavefronts.push_back(measured(compiled, job_of(request, patterns[0], 0, grid), "")); }});
+  for (std::size_t i = 0; i < system.surfaces.size(); ++i) {
+    const prescription::Surface& surface = system.surfaces[i];
+    if (!surface.shape.cloud) continue;
+    for (const std::string& interpolation : interpolations()) {
+      const Prices others(system, weights - weight_of(surface, interpolation_of(surface)) + weight_of(surface, interpolation));
+      work.push_back({others.of(rays.back(), sizes.back()), [&, i, interpolation] {
+        sampling.clouds.push_back(measured_cloud(system, i, interpolation, job_of(request, patterns[0], rays.back(), 0), job_of(request, patterns[0], 0, sizes.back())));
+      }});
+    }
+  }
+  double total = 0, done = 0;
+  for (const Work& one : work) total += one.price;
+  for (const Work& one : work) {
+    one.run();
+    done += one.price;
+    progress(done / total);
+  }
+  return sampling;
+}
+
+}  // namespace sagitta::study

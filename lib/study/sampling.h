@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// The answers of a system (spot RMS, wavefront RMS, Zernike coefficients) by more and more rays and by every interpolation of its
+// point clouds, and what each takes in time: the main job (analysis/job.h) as `trace` runs it, again and again.
+//
+// Spots by the patterns that fill the pupil, 100, 300, 1000, ... rays per field and wavelength; wavefronts on grids of 16 x 16 and more. The finest are the
+// largest of these counts whose price stays within a budget:
+//   price = rays x fields x wavelengths x sum of weights,  weight 1 of a surface, 10 of points, 80 of points by radial functions (1)
+// so that they do not depend on how fast the machine is. Every interpolation of a cloud takes the most rays of the first pattern and the finest grid; the
+// other clouds stay as given.
+//
+// Times are of launching, tracing and collecting; short runs are repeated. Reading, compiling, drawing and writing are not in them.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "lib/prescription/model.h"
+#include "lib/study/convergence.h"
+#include "lib/study/timing.h"
+
+namespace sagitta::study {
+
+struct SamplingRequest {
+  std::int64_t most_rays = 3'000'000;  // per field and wavelength; at least 1000
+  int most_grid = 384;                 // points a side of the pupil; at least 24
+  double budget = 1e9;                 // of (1), for spots, and for wavefronts with a weight of 500 more, for the fit of their Zernike terms
+  int thread_count = 0;                // 0: as many as the machine runs
+};
+
+// Of one field and wavelength. What there is no answer to has a reason.
+struct Answers {
+  std::size_t field = 0, wavelength = 0;  // from 0
+  std::int64_t launched = 0, arrived = 0;
+  Answer spot_rms_um, wavefront_rms_waves, zernike_um;
+  std::string no_spot, no_wavefront, no_zernike;
+};
+
+struct Run {
+  std::string pattern;        // of the spots' rays; "" for wavefronts alone
+  std::int64_t rays = 0;      // asked for; 0 for wavefronts alone
+  int grid = 0;               // points a side; 0 for spots alone
+  std::vector<Answers> answers;  // by field, then wavelength
+  Spread processor_s, wall_s;    // of all threads together, all fields and wavelengths; the clock's
+};
+
+// One interpolation of one cloud, all else as given.
+struct CloudRun {
+  int surface_number = 0;
+  std::string surface, interpolation;
+  bool is_given = false;   // the user's own
+  std::string reason;      // why there is no run
+  double prepare_s = 0;    // processor, of compiling the whole system
+  Run spots, wavefronts;
+
+  // Of processor time, through the whole system; NaN where there is no run.
+  double ns_per_ray() const {
+    double rays = 0;
+    for (const Answers& answers : spots.answers) rays += static_cast<double>(answers.launched);
+    return 1e9 * spots.processor_s.median / rays;
+  }
+};
+
+struct Sampling {
+  prescription::Findings findings;        // with an error: then there is nothing else
+  std::vector<double> wavelengths_um;
+  std::vector<std::vector<Run>> spots;    // by pattern, the one of the truth first; by rising rays
+  std::vector<Run> wavefronts;            // by rising grid
+  std::vector<CloudRun> clouds;           // surface by surface; c1, the truth, first
+};
+
+// Calls `progress` with the share that is done, in [0, 1].
+Sampling sample_system(const prescription::Model& system, const SamplingRequest& request, const std::function<void(double)>& progress);
+
+}  // namespace sagitta::study
