@@ -100,9 +100,9 @@ double distance_from_rim(const View& view, const std::vector<ExactRay>& exact, s
   if (clipped_as % 8 != static_cast<int>(Status::clipped)) return std::numeric_limits<double>::infinity();
   const int number = clipped_as / 8;
   const ExactRay& there = exact[static_cast<std::size_t>(number)];
-  const double radius = static_cast<double>(sqrt(Exact(there.position.x * there.position.x + there.position.y * there.position.y)));
+  const Exact radius = sqrt(Exact(there.position.x * there.position.x + there.position.y * there.position.y));
   const scene::Surface& surface = view.scene.surface(number);
-  return std::min(std::abs(radius - surface.semi_diameter), std::abs(radius - surface.inner_semi_diameter));
+  return std::min(size_of(Exact(radius - Exact(surface.semi_diameter))), size_of(Exact(radius - Exact(surface.inner_semi_diameter))));
 }
 
 Track track(const View& view, const std::vector<trace::RayBatch>& states, const ExactRay& launched, std::size_t i) {
@@ -169,9 +169,9 @@ void know_reference(const scene::Scene& scene, Bundle& bundle) {
 
 Exact opd_of(const ReferenceSphere<Exact>& sphere, const ExactRay& ray) { return optical_path_difference(sphere, ray.position, ray.direction, ray.opl); }
 
-// Where the worst own error of a surface was made.
+// Where a surface lost most.
 struct Worst {
-  double position = -1;
+  double loss = -1;
   std::size_t wavelength = 0;
   ExactRay before;
 };
@@ -222,6 +222,9 @@ class Gatherer {
   Gatherer(const scene::Scene& scene, const RoundingRequest& request) : scene_(scene), request_(request) {
     result_.surfaces.resize(static_cast<std::size_t>(scene.surface_count()) + 1);
     worst_.resize(result_.surfaces.size());
+    result_.scale_mm = scene.pupil.semi_diameter;
+    for (int number = 2; number <= scene.surface_count(); ++number)
+      result_.scale_mm = std::max(result_.scale_mm, norm(scene.surface(number).local_from_previous.translation));
   }
 
   void add(const Bundle& bundle) {
@@ -237,11 +240,9 @@ class Gatherer {
   }
 
   Rounding finish() {
-    for (int number = 2; number <= scene_.surface_count(); ++number)
-      result_.scale_mm = std::max(result_.scale_mm, norm(scene_.surface(number).local_from_previous.translation));
     for (std::size_t k = 1; k < result_.surfaces.size(); ++k) {
       SurfaceRounding& surface = result_.surfaces[k];
-      const double units = surface.own_position_mm.worst() / (0x1p-52 * result_.scale_mm);
+      const double units = loss(surface.own_position_mm.worst(), surface.own_direction_rad.worst(), surface.own_opl_mm.worst()) / 0x1p-52;
       surface.digits_lost = units > 1 ? std::log10(units) : 0;
       if (surface.digits_lost >= 1)
         surface.cause = cause_at(View{scene_, scene_.wavelengths[worst_[k].wavelength]}, static_cast<int>(k), worst_[k].before, result_.scale_mm);
@@ -250,6 +251,8 @@ class Gatherer {
   }
 
  private:
+  // Of the scale, or of a direction's length.
+  double loss(double position, double direction, double opl) const { return std::max({position / result_.scale_mm, direction, opl / result_.scale_mm}); }
   void disagree(const Bundle& bundle, std::size_t i) {
     const Track& one = bundle.tracks[i];
     result_.disagreements.push_back({bundle.field, bundle.wavelength, bundle.pupil[i].x, bundle.pupil[i].y, static_cast<Status>(one.ended % 8),
@@ -264,12 +267,12 @@ class Gatherer {
       surface.position_mm.add(one.errors[k].position), surface.direction_rad.add(one.errors[k].direction), surface.opl_mm.add(one.errors[k].opl);
       surface.own_position_mm.add(one.own[k].position), surface.own_direction_rad.add(one.own[k].direction), surface.own_opl_mm.add(one.own[k].opl);
       if (k == 0) continue;
-      result_.scale_mm = std::max(result_.scale_mm, norm(bundle.states[k].position(i)));
       const int number = static_cast<int>(k);
-      if (one.own[k].position > worst_[k].position) {
+      const double lost = loss(one.own[k].position, one.own[k].direction, one.own[k].opl);
+      if (lost > worst_[k].loss) {
         ExactRay before = as_exact(bundle.states[from], i);
         for (std::size_t passed = from + 1; passed < k; ++passed) before = view.step(static_cast<int>(passed), before);
-        worst_[k] = {one.own[k].position, bundle.wavelength, before};
+        worst_[k] = {lost, bundle.wavelength, before};
       }
       if (!view.is_dummy(number)) from = k;
     }

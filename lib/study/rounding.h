@@ -13,8 +13,9 @@
 // The numbers of the compiled scene (indices, curvatures, frames, points, patches) are taken as exact: what is proven is rounding, not a
 // formula. Dummies that the tracer passes by have no share.
 //
-// Digits lost: log10 of the worst own error, in units of 2^-52 times the scale, the largest coordinate of a hit or distance of two surfaces; not below 0. Where they
-// are lost: the largest of some factors by which geometry enlarges rounding, at the ray of the worst own error,
+// Digits lost: log10 of the worst own error of place or path, in units of 2^-52 times the scale, or of direction, in units of 2^-52; not below 0. The
+// scale is the largest distance of a vertex from the next, or the entrance pupil's semi-diameter. Where digits are lost: the largest of some factors
+// by which geometry enlarges rounding, at the ray that loses most,
 //   near-grazing incidence 1/cos I;  near the critical angle 1/cos I';  steep surface sqrt(1 + |grad z|^2);  long distance |t|/scale;
 //   strong curvature |c| scale;  ill-conditioned facet 1/sin(its smallest angle);  index ratio near 1, where nothing else is to blame.
 //
@@ -73,7 +74,7 @@ struct FieldRounding {
 };
 
 struct Rounding {
-  double scale_mm = 0;                    // the largest coordinate of a hit or distance of two surfaces
+  double scale_mm = 0;
   std::vector<SurfaceRounding> surfaces;  // [0] is the launch, [k] surface k
   Spoiled opd_formula_waves;              // what (3)'s own rounding adds
   std::vector<FieldRounding> fields;      // field by field, its wavelengths in order

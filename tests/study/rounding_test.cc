@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+// What verify says of rounding, against closed forms and against the tracer's own numbers.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "lib/analysis/wavefront.h"
+#include "lib/study/rounding.h"
+#include "lib/study/truth.h"
+#include "lib/trace/pattern.h"
+#include "tests/study/subjects.h"
+
+namespace sagitta::test {
+namespace {
+
+using study::Rounding, study::rounding_of;
+using surface::Status;
+
+// Axial rays at pupil points that are exact (semi-diameter 8 mm) through planes 16 and 4 mm apart: no operation rounds but sums of numbers
+// with few digits, and a sine and a cosine of 0.
+TEST(Rounding, IsNoneWhereNothingIsRounded) {
+  const auto compiled = checked(scene::compile(system_of({surface_of({}, 16, 1.5), surface_of({}, 4, 1)}, 16)));
+  const Rounding rounding = rounding_of(compiled.scene, {.rays = 37});
+  ASSERT_EQ(rounding.surfaces.size(), 4u);
+  EXPECT_EQ(rounding.rays, 37);
+  EXPECT_EQ(rounding.scale_mm, 16);
+  for (const auto& surface : rounding.surfaces) {
+    EXPECT_EQ(surface.position_mm.count(), 37);
+    EXPECT_EQ(surface.position_mm.worst(), 0);
+    EXPECT_EQ(surface.direction_rad.worst(), 0);
+    EXPECT_EQ(surface.opl_mm.worst(), 0);
+    EXPECT_EQ(surface.digits_lost, 0);
+    EXPECT_EQ(surface.cause, "");
+  }
+  EXPECT_EQ(rounding.fields.at(0).no_wavefront, "the image is afocal");
+}
+
+// The ellipsoid of K = -1/n^2, n = 2: exact rays meet in its focus with one path, so the tracer's places across the axis are its errors, and so
+// are its OPDs, whatever the sphere (its radius of 16 mm: the exit pupil is the surface). 1e-19 is the rounding of the exact numbers to
+// doubles.
+TEST(Rounding, OfACartesianOvalIsAllThatTheTracerSays) {
+  const auto compiled = checked(scene::compile(system_of({surface_of(conic_shape(8, -.25), 16, 2)}, 8)));
+  const scene::Scene& scene = compiled.scene;
+  const Rounding rounding = rounding_of(scene, {.rays = 200});
+  const auto pupil = trace::pupil_points({trace::PatternKind::hexapolar}, 200);
+  auto rays = trace::launch(scene, scene.fields[0], 1, pupil);
+  trace::trace(scene, scene.primary, rays);
+  const auto sphere = analysis::reference_sphere(scene, scene.primary, scene.fields[0]).sphere;
+  double place = 0, opd = 0;
+  for (std::size_t i = 0; i < pupil.size(); ++i) {
+    ASSERT_EQ(rays.ended[i], 0);
+    place = std::fmax(place, std::hypot(rays.x[i], rays.y[i]));
+    opd = std::fmax(opd, std::abs(optical_path_difference(sphere, rays.position(i), rays.direction(i), rays.opl[i])) / .000855);
+  }
+  EXPECT_GT(place, 0);
+  EXPECT_GT(opd, 0);
+  const auto& field = rounding.fields.at(0);
+  EXPECT_EQ(field.arrived, static_cast<std::int64_t>(pupil.size()));
+  EXPECT_NEAR(field.position_mm.worst(), place, 1e-12 * place);
+  EXPECT_NEAR(field.opd_waves.worst(), opd, 1e-12 * opd);
+  EXPECT_TRUE(rounding.disagreements.empty());
+}
+
+// Shares add up ray by ray, so no error in the image is larger than the sum of the largest shares.
+TEST(Rounding, SharesOfSurfacesCoverTheErrorInTheImage) {
+  const auto compiled = checked(scene::compile(
+      system_of({surface_of(conic_shape(30, -.5), 4, 1.5), surface_of(conic_shape(-40, 0), 2, 1), surface_of({}, 1, 1),  // the last one is a dummy
+                 surface_of(zernike_shape(25, .2, 6, {{3, 2.0}, {8, -1.5}}), 5, 1.6), surface_of(conic_shape(-60, -2), 30, 1)}, 9, {0, 11})));
+  const Rounding rounding = rounding_of(compiled.scene, {.rays = 100});
+  double share_mm = 0, share_waves = rounding.opd_formula_waves.worst(), place = 0, opd = 0;
+  for (const auto& surface : rounding.surfaces) share_mm += surface.share_mm.worst(), share_waves += surface.share_waves.worst();
+  for (const auto& field : rounding.fields) {
+    EXPECT_EQ(field.no_wavefront, "");
+    place = std::fmax(place, field.position_mm.worst());
+    opd = std::fmax(opd, field.opd_waves.worst());
+  }
+  EXPECT_GT(place, 0);
+  EXPECT_LE(place, share_mm);
+  EXPECT_LE(opd, share_waves);
+  EXPECT_EQ(rounding.surfaces[3].share_mm.worst(), 0);  // it is passed by
+  EXPECT_EQ(rounding.surfaces[3].share_waves.worst(), 0);
+  EXPECT_GT(rounding.surfaces[4].share_mm.worst(), 0);
+}
+
+// Glass of 1.5, then a plane tilted by the critical angle less 1e-12 of it: cos I' = sqrt(2e-12 tan^2 I_c ...) is about 1e-6, so a direction loses 6 digits
+// or so there, and the cause is named. eps/cos I' is what the radicand's rounding forces (surface/refraction.h).
+TEST(Rounding, NamesTheCriticalAngle) {
+  const double critical = std::asin(1 / 1.5), tilt = critical * (1 - 1e-12);
+  auto tilted = surface_of({}, 5, 1);
+  tilted.tilt_deg = {tilt * 180 / 3.14159265358979324, 0, 0};
+  const auto compiled = checked(scene::compile(system_of({surface_of({}, 10, 1.5), tilted}, 1)));
+  const Rounding rounding = rounding_of(compiled.scene, {.rays = 20});
+  const double cosine = std::sqrt(1 - std::pow(1.5 * std::sin(tilt), 2));  // to a percent
+  const auto& surface = rounding.surfaces.at(2);
+  EXPECT_EQ(surface.cause, "near the critical angle");
+  EXPECT_GT(surface.digits_lost, 4);
+  EXPECT_LT(surface.own_direction_rad.worst(), 1e-15 / cosine);
+  EXPECT_GT(surface.own_direction_rad.worst(), 1e-18 / cosine);
+}
+
+// An aperture's rim between the tracer's place and the exact one.
+TEST(Rounding, CountsRaysThatEndInOneWayOnly) {
+  prescription::Model model = system_of({surface_of(conic_shape(30, -.5), 4, 1.5), surface_of(conic_shape(-40, 0), 30, 1)}, 9);
+  const auto open = checked(scene::compile(model));
+  const auto pupil = trace::pupil_points({trace::PatternKind::hexapolar}, 1000);
+  auto rays = trace::launch(open.scene, open.scene.fields[0], 1, pupil);
+  for (int number = 1; number <= 2; ++number) trace::trace_surface(open.scene, open.scene.primary, number, rays);
+  const auto truth = study::true_rays(open.scene, open.scene.primary, open.scene.fields[0], pupil, {.surface_number = 2});
+  ASSERT_TRUE(truth.rays) << truth.reason;
+  int found = 0;
+  for (std::size_t i = 0; i < pupil.size() && found == 0; ++i) {
+    const double r = std::sqrt(rays.x[i] * rays.x[i] + rays.y[i] * rays.y[i]);
+    const auto& exact = truth.rays->at_surface[i].position;
+    const long double exact_r = std::hypot(exact.x, exact.y);
+    if (!(std::abs(static_cast<double>(r - exact_r)) > 3e-16 * r)) continue;  // a rim must fit between the two, squared or not
+    model.surfaces[1].semi_diameter_mm = static_cast<double>((r + exact_r) / 2);
+    const auto narrow = checked(scene::compile(model));
+    const Rounding rounding = rounding_of(narrow.scene, {.rays = 1000});
+    for (const auto& one : rounding.disagreements) {
+      if (one.pupil_x != pupil[i].x || one.pupil_y != pupil[i].y) continue;
+      ++found;
+      EXPECT_TRUE(one.is_on_rim);
+      EXPECT_NE(one.status, one.exact_status);
+      EXPECT_EQ(one.status, r < exact_r ? Status::ok : Status::clipped);
+      EXPECT_EQ(one.surface + one.exact_surface, 2);  // of the one that is clipped
+    }
+    const Rounding strict = rounding_of(narrow.scene, {.rays = 1000, .position_tolerance_mm = 0});
+    EXPECT_EQ(strict.disagreements.size(), rounding.disagreements.size());
+    for (const auto& one : strict.disagreements) EXPECT_FALSE(one.is_on_rim);
+  }
+  EXPECT_EQ(found, 1);
+}
+
+TEST(Rounding, IsTheSameForAnyNumberOfThreads) {
+  const auto compiled = checked(scene::compile(paper_lens(3)));
+  const Rounding one = rounding_of(compiled.scene, {.rays = 300, .thread_count = 1}), four = rounding_of(compiled.scene, {.rays = 300, .thread_count = 4});
+  for (std::size_t k = 0; k < one.surfaces.size(); ++k) {
+    EXPECT_EQ(one.surfaces[k].position_mm.rms(), four.surfaces[k].position_mm.rms());
+    EXPECT_EQ(one.surfaces[k].share_waves.rms(), four.surfaces[k].share_waves.rms());
+  }
+}
+
+}  // namespace
+}  // namespace sagitta::test
