@@ -34,7 +34,7 @@ struct ExplainOptions {
 int explain_command(const ExplainOptions& options);
 
 struct VerifyOptions {
-  std::string system;
+  std::vector<std::string> systems;
   std::int64_t ray_count = 100;
   double position_tolerance_mm = 1e-9, opd_tolerance_waves = 1e-4;
   int thread_count = 0;

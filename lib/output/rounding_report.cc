@@ -107,7 +107,9 @@ std::string rounding_text(const RoundingReport& report) {
   return text + verdict(report);
 }
 
-std::string rounding_json(const RoundingReport& report) {
+namespace {
+
+ordered_json json_of(const RoundingReport& report) {
   const study::Rounding& rounding = report.rounding;
   const Worst worst = worst_of(rounding);
   ordered_json json{{"system", report.system.system}, {"version", report.system.version}, {"basis", basis}, {"digits", 50}, {"rays", rounding.rays}, {"scale_mm", rounding.scale_mm},
@@ -127,7 +129,32 @@ std::string rounding_json(const RoundingReport& report) {
     json["rays_that_end_differently"].push_back({{"field", one.field}, {"wavelength_nm", report.system.wavelengths_nm[one.wavelength]}, {"pupil", {one.pupil_x, one.pupil_y}},
                                                  {"status", surface::status_names[static_cast<std::size_t>(one.status)]}, {"surface", one.surface},
                                                  {"exact_status", surface::status_names[static_cast<std::size_t>(one.exact_status)]}, {"exact_surface", one.exact_surface}, {"is_on_rim", one.is_on_rim}});
-  return text_of(json);
+  return json;
+}
+
+}  // namespace
+
+std::string rounding_json(std::span<const RoundingReport> reports) {
+  if (reports.size() == 1) return text_of(json_of(reports.front()));
+  ordered_json all = ordered_json::array();
+  for (const RoundingReport& report : reports) all.push_back(json_of(report));
+  return text_of(all);
+}
+
+std::string rounding_summary(std::span<const RoundingReport> reports) {
+  Table table{{{"system", "", true}, {"rays", ""}, {"end differently", ""}, {"digits lost", ""}, {"at", "", true}, {"place in the image", "worst mm"}, {"OPD", "worst waves"}, {"", "", true}}, {}};
+  for (const RoundingReport& report : reports) {
+    const auto& surfaces = report.rounding.surfaces;
+    const auto worst_surface = std::max_element(surfaces.begin(), surfaces.end(), [](const auto& a, const auto& b) { return a.digits_lost < b.digits_lost; });
+    const auto number = static_cast<std::size_t>(worst_surface - surfaces.begin());
+    const std::string where = number == 0 ? "launch" : fmt::format("surface {}", number);
+    const Worst worst = worst_of(report.rounding);
+    const bool has_wavefront = std::any_of(report.rounding.fields.begin(), report.rounding.fields.end(), [](const auto& one) { return one.opd_waves.count() > 0; });
+    table.rows.push_back({report.system.system, std::to_string(report.rounding.rays), std::to_string(report.rounding.disagreements.size()), fmt::format("{:.1f}", worst_surface->digits_lost),
+                          worst_surface->digits_lost > 0 ? where : "", fmt::format("{:.1e}", worst.position_mm), has_wavefront ? fmt::format("{:.1e}", worst.opd_waves) : "-",
+                          is_good(report) ? "good" : "not good"});
+  }
+  return fmt::format("double against 50 digits; {}\n\n{}", basis, to_text(table));
 }
 
 }  // namespace sagitta::output

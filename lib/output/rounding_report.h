@@ -2,6 +2,7 @@
 // What `sagitta verify` says: what rounding does to a system's answers, as tables and as JSON, and whether they are good.
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "lib/output/report.h"
@@ -21,6 +22,9 @@ bool is_good(const RoundingReport& report);
 int surface_to_blame(const RoundingReport& report);
 
 std::string rounding_text(const RoundingReport& report);
-std::string rounding_json(const RoundingReport& report);
+// A line for each system.
+std::string rounding_summary(std::span<const RoundingReport> reports);
+// An object; of several systems, a list of them.
+std::string rounding_json(std::span<const RoundingReport> reports);
 
 }  // namespace sagitta::output
