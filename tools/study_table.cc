@@ -48,9 +48,10 @@ std::string basis_of(const StudyFile& study) {
 }
 
 // `threads` 0 is so many.
-std::string settings_text(const Parameters& settings, int thread_count) {
+std::string settings_text(const Parameters& settings, int thread_count, std::string_view without = {}) {
   std::string text;
-  for (const auto& [key, value] : settings.numbers) text += fmt::format("{}: {}\n", key, key == "threads" && value == 0 ? thread_count : value);
+  for (const auto& [key, value] : settings.numbers)
+    if (key != without) text += fmt::format("{}: {}\n", key, key == "threads" && value == 0 ? thread_count : value);
   for (const auto& [key, value] : settings.texts) text += fmt::format("{}: {}\n", key, value);
   return text;
 }
@@ -92,6 +93,7 @@ bool is_of_use(std::string_view key, const Parameters& settings) {
   if (std::find(of_points.begin(), of_points.end(), key) != of_points.end() && !is_sampled) return false;
   if (key == "tolerance_mm") return !is_sampled;
   if (key == "margin_spacings") return !(settings.number("cloud_radius_mm") > 0);
+  if (key == "compared_rays") return settings.number("compared_rays") < settings.number("rays");
   if (key == "shape_spacings") return interpolation == "multiquadric";
   if (key == "correlation_length_um" || key == "truth") return settings.number("rms_um") != 0;
   return true;
@@ -101,7 +103,7 @@ void name_rows(const StudyFile& study, std::vector<StudyRow>& rows) {
   std::map<std::string, std::set<std::string>> values;
   for (const StudyRow& row : rows)
     for (const Word& word : words)
-      if (is_of_use(word.key, *row.settings)) values[word.key].insert(value_of(study, *row.settings, word.key));
+      if (is_of_use(word.key, *row.settings) || std::string_view(word.key) == "compared_rays") values[word.key].insert(value_of(study, *row.settings, word.key));
   const auto is_as_prescribed = [](const StudyRow& row) { return row.settings->text("interpolation") == study::Variant::as_prescribed; };
   const bool all_as_prescribed = std::all_of(rows.begin(), rows.end(), is_as_prescribed);
   for (StudyRow& row : rows) {
@@ -226,7 +228,9 @@ double StudyRow::number(std::string_view column) const {
 std::vector<StudyRow> rows_of(const StudyFile& study, int thread_count) {
   const std::string basis = basis_of(study);
   std::vector<StudyRow> rows;
-  for (const Parameters& settings : study.variants) rows.push_back({&settings, "", "", "", "", hash_of(basis + settings_text(settings, numerics::thread_count_of(thread_count))), {}});
+  const int threads = numerics::thread_count_of(thread_count);
+  for (const Parameters& settings : study.variants)
+    rows.push_back({&settings, "", "", "", "", settings_text(settings, threads, "seed"), hash_of(basis + settings_text(settings, threads)), {}});
   name_rows(study, rows);
   return rows;
 }
@@ -279,7 +283,7 @@ std::vector<Ensemble> ensembles_of(const std::vector<StudyRow>& rows) {
   std::map<std::string_view, std::size_t> places;
   for (const StudyRow& row : rows) {
     if (!row.is_measured() || row.has_failed()) continue;
-    const auto [place, is_new] = places.emplace(row.of_any_seed, all.size());
+    const auto [place, is_new] = places.emplace(row.settings_but_seed, all.size());
     if (is_new) all.emplace_back();
     all[place->second].rows.push_back(&row);
   }

@@ -23,6 +23,7 @@ struct StudyRow {
   std::string series;        // the name without density, number of rays, tolerance and seed
   std::string of_any_rays;   // the name without the number of rays and the seed
   std::string of_any_seed;   // the name without the seed
+  std::string settings_but_seed;
   std::string key;           // what the measurement depends on, as a hash: settings, system, program, processor
   std::vector<std::string> cells;
 
