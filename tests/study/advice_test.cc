@@ -29,7 +29,7 @@ class Curves {
     Curve result{quantity, pattern, {}, {}, uncertainty, {}};
     for (const Made& made : steps) {
       runs_.push_back({pattern, made.rays, made.grid, {}, {made.seconds, made.seconds, made.seconds, 3}, {}});
-      result.steps.push_back({&runs_.back(), 0, {}, {}, {}, made.bound});
+      result.steps.push_back({&runs_.back(), 0, {}, {}, {}, {}, made.bound});
     }
     return result;
   }
