@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a study claims of its rungs, held against counts that it has not measured and against a truth that it does not have.
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -7,6 +8,7 @@
 #include "lib/prescription/reader.h"
 #include "lib/scene/compile.h"
 #include "lib/study/settled.h"
+#include "lib/surface/status.h"
 #include "tests/study/subjects.h"
 
 namespace sagitta::test {
@@ -30,7 +32,7 @@ prescription::Model clipped_lens() {
   return model;
 }
 
-std::vector<double> spots_of(const scene::Scene& scene, const char* pattern, std::int64_t rays) {
+std::vector<double> spots_of(const scene::Scene& scene, const std::string& pattern, std::int64_t rays) {
   analysis::JobRequest job;
   job.want_wavefront = false;
   job.pattern = *trace::parse_pattern(pattern);
@@ -42,61 +44,69 @@ std::vector<double> spots_of(const scene::Scene& scene, const char* pattern, std
   return spots;
 }
 
-struct Breaks {
-  int checked = 0, broken = 0;
-  double worst = 0;  // of error/claim
-};
-
-// 45 counts of each pattern, evenly drawn from a logarithmic scale of 100 to 1e6, against rays four times as many as the study's finest. The claim of a count
-// is that of the rung below it.
-Breaks breaks_of(const prescription::Model& model, const std::string& pattern) {
+// 45 counts of each pattern, evenly drawn from a logarithmic scale of 100 to 1e6 (of random rays each with its own seed), against four times as many rays as the study's finest. The claim
+// of a count is that of the rung below it, of the same field and wavelength. Where the errors of a rim jump from one count to the next, no measured maximum is safe: for normal errors the worst of 8 is
+// passed by one of 9 new ones, twice that by one of a thousand; claims lie between. The share that README.md states is one of 50 for an answer of `square` and `random`, none by twice, and none at all of hexapolar.
+void check_claims(const prescription::Model& model) {
+  constexpr int draws = 45;
   const study::Sampling sampling = study::sample_system(model, {}, [](double) {});
-  const std::vector<Curve> curves = study::curves_of(sampling);
   const auto compiled = scene::compile(model);
   const std::vector<double> truths = spots_of(*compiled.scene, "hexapolar", 12'000'000);
-  Breaks breaks;
-  for (const Curve& curve : curves) {
-    if (curve.quantity != Quantity::spot_rms || curve.pattern != pattern) continue;
+  int patterns = 0;
+  for (const Curve& curve : study::curves_of(sampling)) {
+    if (curve.quantity != Quantity::spot_rms) continue;
+    ++patterns;
     EXPECT_EQ(curve.steps.back().run->rays, 3'000'000);
     std::mt19937_64 generator(7);  // its values are the same everywhere, those of distributions are not
-    for (int draw = 0; draw < 45; ++draw) {
-      const double place = static_cast<double>(generator() >> 11) * 0x1p-53;
-      const auto count = static_cast<std::int64_t>(std::pow(10, 2 + 4 * place));
-      const std::vector<double> spots = spots_of(*compiled.scene, pattern == "random:1" ? ("random:" + std::to_string(1000 + draw)).c_str() : pattern.c_str(), count);
+    int broken = 0;
+    for (int draw = 0; draw < draws; ++draw) {
+      const auto count = static_cast<std::int64_t>(std::pow(10, 2 + 4 * static_cast<double>(generator() >> 11) * 0x1p-53));
+      const std::string pattern = curve.pattern == "random:1" ? "random:" + std::to_string(1000 + draw) : curve.pattern;
+      const std::vector<double> spots = spots_of(*compiled.scene, pattern, count);
+      ASSERT_EQ(spots.size(), truths.size());
       const auto rung = std::find_if(curve.steps.rbegin(), curve.steps.rend(), [&](const study::Step& step) { return step.run->rays <= count; });
+      ASSERT_NE(rung, curve.steps.rend());
       for (std::size_t k = 0; k < spots.size(); ++k) {
-        ++breaks.checked;
-        const double ratio = std::abs(spots[k] - truths[k]) / rung->bounds[k];
-        breaks.broken += ratio > 1;
-        breaks.worst = std::max(breaks.worst, ratio);
+        const double error = std::abs(spots[k] - truths[k]);
+        broken += error > rung->bounds[k];
+        EXPECT_LT(error, 2 * rung->bounds[k]) << pattern << " " << count << " field and wavelength " << k;
       }
     }
+    EXPECT_LE(broken, curve.pattern == "hexapolar" ? 0 : draws * static_cast<int>(truths.size()) / 50) << curve.pattern;
   }
-  printf("%s %s: %d of %d broken, worst %.3f\n", model.name.c_str(), pattern.c_str(), breaks.broken, breaks.checked, breaks.worst);
-  return breaks;
+  EXPECT_EQ(patterns, 3);
 }
 
-TEST(SamplingSlow, ClaimsHoldBetweenTheRungs) {
-  for (const auto& model : {shipped("navarro-eye"), shipped("ritchey-chretien"), clipped_lens()})
-    for (const char* pattern : {"hexapolar", "square", "random:1"}) breaks_of(model, pattern);
-}
+TEST(SamplingSlow, ClaimsOfAnEyeHoldBetweenTheRungs) { check_claims(shipped("navarro-eye")); }
+TEST(SamplingSlow, ClaimsOfAnObscuredBeamHoldBetweenTheRungs) { check_claims(shipped("ritchey-chretien")); }
+TEST(SamplingSlow, ClaimsOfAClippedBeamHoldBetweenTheRungs) { check_claims(clipped_lens()); }
 
-// sqrt(sum c_j^2) over j > 0, of orthonormal terms: what the least squares of a wavefront that 36 terms take up leave of the rim's samples.
+// Over a full disc RMS^2 = sum_(j > 0) c_j^2 + residual^2 for orthonormal terms, to the residual's own sampling: least squares leave the samples of the rim no weight but in the residual, which is small.
 TEST(SamplingSlow, TruthOfTheWavefrontHoldsAgainstItsZernikeTerms) {
+  int checked = 0;
   for (const char* name : {"ac508-100-b", "le-grand-eye", "navarro-eye", "double-gauss", "cooke-triplet", "cornea-zernike"}) {
-    const study::Sampling sampling = study::sample_system(shipped(name), {}, [](double) {});
+    const prescription::Model model = shipped(name);
+    const study::Sampling sampling = study::sample_system(model, {}, [](double) {});
     const std::vector<Curve> curves = study::curves_of(sampling);
-    for (const Curve& curve : curves) {
-      if (curve.quantity != Quantity::wavefront_rms) continue;
-      for (std::size_t k = 0; k < curve.truths.size(); ++k) {
-        const study::Answers& finest = curve.steps.back().run->answers[k];
-        double squares = 0;
-        for (std::size_t j = 1; j < finest.zernike_um.size(); ++j) squares += finest.zernike_um[j] * finest.zernike_um[j];
-        const double rms = std::sqrt(squares) / sampling.wavelengths_um[finest.wavelength];
-        printf("%s %zu arrived %d: %.6f +- %.6f, %.6f: %.2f\n", name, k, finest.arrived == finest.launched, curve.truths[k].value[0], curve.truths[k].uncertainty, rms, std::abs(curve.truths[k].value[0] - rms) / curve.truths[k].uncertainty);
-      }
+    const auto curve = std::find_if(curves.begin(), curves.end(), [](const Curve& one) { return one.quantity == Quantity::wavefront_rms; });
+    ASSERT_NE(curve, curves.end());
+    const auto compiled = scene::compile(model);
+    analysis::JobRequest job;
+    job.want_spot = false;
+    job.wavefront.size = curve->steps.back().run->grid;
+    const auto results = analysis::run_job(*compiled.scene, job);
+    ASSERT_EQ(results.size(), curve->truths.size());
+    for (std::size_t k = 0; k < results.size(); ++k, ++checked) {
+      const auto& fit = results[k].wavefront->wavefront->zernike;
+      ASSERT_TRUE(fit);
+      EXPECT_EQ(results[k].rays.total(), results[k].rays[surface::Status::ok]) << "a full disc";
+      double squares = fit->residual_rms * fit->residual_rms;
+      for (std::size_t j = 1; j < fit->coefficients.size(); ++j) squares += fit->coefficients[j] * fit->coefficients[j];
+      const double rms_waves = std::sqrt(squares) / sampling.wavelengths_um[results[k].wavelength];
+      EXPECT_NEAR(curve->truths[k].value[0], rms_waves, curve->truths[k].uncertainty) << name << " " << k;
     }
   }
+  EXPECT_EQ(checked, 6 + 3 + 9 + 9 + 9 + 2);
 }
 
 }  // namespace

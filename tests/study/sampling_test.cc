@@ -99,7 +99,9 @@ TEST(Sampling, ClaimsOfADefocusedMirrorHoldAgainstTheClosedForm) {
       for (const auto& answers : step->run->beyond) worst_from_there_on = std::max(worst_from_there_on, off_of(answers[0]));
       EXPECT_LE(worst_from_there_on, step->bounds[0]) << curve.pattern << step->count;
       // No error rises by more than the worst; the finest's own error, u at most, enters once itself and in either. The last rungs go on with those before.
-      if (step->run->beyond.size() >= 4) EXPECT_LE(step->bounds[0], 2 * worst_from_there_on + 3 * curve.truths[0].uncertainty) << curve.pattern << step->count;
+      if (step->run->beyond.size() >= 4) {
+        EXPECT_LE(step->bounds[0], 2 * worst_from_there_on + 3 * curve.truths[0].uncertainty) << curve.pattern << step->count;
+      }
       EXPECT_NEAR(step->bound.percent, 100 * step->bounds[0] / curve.truths[0].value[0], 1e-12);
       EXPECT_TRUE(std::isnan(step->bound.absolute));
     }
