@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 constexpr const char* command = "study";
 
-std::optional<prescription::StudyFile> load_study(const std::string& name) {
+std::optional<prescription::StudyFile> load_study(const std::string& name, const std::string& folder) {
   const auto file = prescription::find_study(name);
   if (!file) {
     const std::vector<std::string> names = prescription::study_names();
@@ -34,6 +34,7 @@ std::optional<prescription::StudyFile> load_study(const std::string& name) {
                meant.empty() ? fmt::format("give a file, or one of {}", fmt::join(names, ", ")) : fmt::format("did you mean '{}'?", meant));
     return std::nullopt;
   }
+  if (is_of_the_other_kind(*file, "sagitta", "this is a system, not a study", fmt::format("give it with --system: sagitta study --system {} -o {}", *file, folder))) return std::nullopt;
   prescription::StudyReadResult read = prescription::read_study(*file);
   if (!report(read.findings)) return std::nullopt;
   return std::move(read.study);
@@ -105,7 +106,7 @@ int study_command(const StudyOptions& options) {
     would_be_lost(file);
     return 1;
   }
-  const auto study = load_study(options.study);
+  const auto study = load_study(options.study, options.folder);
   if (!study) return 1;
   if (!pictures(command)) return 1;
   const fs::path folder(options.folder);

@@ -269,6 +269,14 @@ StudyReadResult read_study(const std::string& file) {
   return {std::move(study), std::move(ordered)};
 }
 
+std::optional<Place> place_of_root_key(const std::string& file, std::string_view key) {
+  Findings unused;
+  const YamlNode::Pointer root = read_yaml(file, unused);
+  if (!root) return std::nullopt;
+  const auto found = std::find_if(root->entries.begin(), root->entries.end(), [&](const YamlNode::Entry& entry) { return entry.key == key; });
+  return found == root->entries.end() ? std::nullopt : std::optional(found->key_place);
+}
+
 std::optional<std::string> find_study(const std::string& name) {
   std::error_code failure;
   if (fs::is_regular_file(name, failure)) return name;
