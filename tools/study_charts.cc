@@ -45,6 +45,8 @@ constexpr PlotKind kinds[] = {
     {"looks-tolerance", "looks at the surface against tolerance", tolerance, {"looks_per_ray", "looks per ray, mean"}},
     {"looks-most-tolerance", "looks of the slowest ray against tolerance", tolerance, {"looks_most", "looks of the ray that takes most"}}};
 
+constexpr double largest_order_error = 0.05;  // beyond it the points follow no power law
+
 struct Series {
   std::string name;
   std::vector<double> x, y;
@@ -126,6 +128,7 @@ std::vector<StudyPlot> plots_of(const prescription::StudyFile& study, const std:
       std::vector<double> spacings;
       for (const double x : one.x) spacings.push_back(1 / std::sqrt(x));
       const study::Order order = study::order_of(spacings, one.y);
+      if (!(order.standard_error <= largest_order_error)) continue;
       plot.orders.push_back({one.name, kind.fitted, order});
       const auto [low, high] = std::minmax_element(one.x.begin(), one.x.end());
       plot.chart.series.back().fit = output::PowerLaw{order.factor, -order.slope / 2, *low, *high, fmt::format("order {:.2f}", std::abs(order.slope) < .005 ? 0.0 : order.slope)};

@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 constexpr const char* command = "study";
 
-std::optional<prescription::StudyFile> load_study(const std::string& name) {
+std::optional<prescription::StudyFile> load_study(const std::string& name, const std::string& folder) {
   const auto file = prescription::find_study(name);
   if (!file) {
     const std::vector<std::string> names = prescription::study_names();
@@ -34,6 +34,7 @@ std::optional<prescription::StudyFile> load_study(const std::string& name) {
                meant.empty() ? fmt::format("give a file, or one of {}", fmt::join(names, ", ")) : fmt::format("did you mean '{}'?", meant));
     return std::nullopt;
   }
+  if (is_of_the_other_kind(*file, "sagitta", "this is a system, not a study", fmt::format("give it with --system: sagitta study --system {} -o {}", *file, folder))) return std::nullopt;
   prescription::StudyReadResult read = prescription::read_study(*file);
   if (!report(read.findings)) return std::nullopt;
   return std::move(read.study);
@@ -47,6 +48,30 @@ bool save(const fs::path& folder, const prescription::StudyFile& study, const st
                                                                                  {"version", version()}, {"build", build()}, {"processor", processor_name()}}, records));
   const bool csv_is_written = written(command, csv);
   return written(command, json) && csv_is_written;
+}
+
+std::string text_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+void would_be_lost(const fs::path& file) {
+  fmt::print(stderr, "sagitta study: {} is of another kind of study, and would be lost\n  hint: give another folder, or move it away\n", file.string());
+}
+
+// How many rows are taken from an earlier run; none, after saying so, where what is there would be lost.
+std::optional<int> take_earlier(std::vector<StudyRow>& rows, const prescription::StudyFile& study, const fs::path& file) {
+  std::error_code failure;
+  if (!fs::exists(file, failure)) return 0;
+  Finished finished{0, 0, true};
+  if (fs::is_regular_file(file, failure)) finished = take_finished(rows, study, text_of(file));
+  if (finished.is_unreadable) {
+    would_be_lost(file);
+    return std::nullopt;
+  }
+  if (finished.taken > 0) fmt::print(stderr, "sagitta study: {} of {} rows are kept from an earlier run\n", finished.taken, rows.size());
+  if (finished.others > 0) fmt::print(stderr, "sagitta study: {} rows of an earlier run are left out: they failed, or are of other settings\n", finished.others);
+  return finished.taken;
 }
 
 // True if what was measured last is written.
@@ -75,17 +100,21 @@ bool measure_all(const prescription::StudyFile& study, std::vector<StudyRow>& ro
 }  // namespace
 
 int study_command(const StudyOptions& options) {
-  if (!options.system.empty()) return study_system(options);
-  const auto study = load_study(options.study);
+  if (!options.system.empty()) {
+    const fs::path file = fs::path(options.folder) / "study.csv";
+    if (std::error_code failure; !fs::is_regular_file(file, failure) || !output::rows_of_csv(text_of(file), study_columns())) return study_system(options);
+    would_be_lost(file);
+    return 1;
+  }
+  const auto study = load_study(options.study, options.folder);
   if (!study) return 1;
   if (!pictures(command)) return 1;
   const fs::path folder(options.folder);
   if (!make_folder(command, folder)) return 1;
 
-  std::vector<StudyRow> rows = rows_of(*study);
-  std::ifstream earlier(folder / "study.csv", std::ios::binary);
-  const int kept = take_finished(rows, *study, std::string(std::istreambuf_iterator<char>(earlier), {}));
-  if (kept > 0) fmt::print(stderr, "sagitta study: {} of {} rows are kept from an earlier run\n", kept, rows.size());
+  std::vector<StudyRow> rows = rows_of(*study, options.thread_count);
+  const auto kept = take_earlier(rows, *study, folder / "study.csv");
+  if (!kept) return 1;
   bool all_written = measure_all(*study, rows, folder, options.thread_count);
 
   const std::vector<StudyPlot> plots = plots_of(*study, rows);
@@ -98,7 +127,8 @@ int study_command(const StudyOptions& options) {
     ++failed;
     fmt::print(stderr, "sagitta study: {}: {}\n", row.name, row.text("failed"));
   }
-  fmt::print("{}: {} of {} variants measured, {} of them before; see {}\n", study->title, rows.size() - static_cast<std::size_t>(failed), rows.size(), kept, (folder / "study.md").string());
+  fmt::print("{}: {} of {} variants measured, {} of them before; {} {}\n", study->title, rows.size() - static_cast<std::size_t>(failed), rows.size(), *kept,
+             all_written ? "see" : "not all is written in", all_written ? (folder / "study.md").string() : folder.string());
   return all_written && failed == 0 ? 0 : 1;
 }
 

@@ -134,7 +134,9 @@ std::string study_page(const prescription::StudyFile& study, const std::vector<S
   text += fmt::format("Machine: {}, {} threads; sagitta {}, {}.\n\n", plain(processor_name()), std::thread::hardware_concurrency(), version(), build());
   text += fmt::format("{} of {} variants. Distances and angles are of each ray from the exact one at the surface, spots at the image, over the rays that both find; times are medians of repeated "
                       "runs of processor time, preparation and tracing apart; the peak is that of the variant's own process, of which its own is what it did not begin with: the program and the exact "
-                      "rays. Variants that differ in the seed alone stand in one line, each number as the mean ± the standard deviation over the seeds. `study.csv` has all of it in full.\n\n## Rows\n\n",
+                      "rays. Variants that differ in the seed alone stand in one line, each number as the mean ± the standard deviation over the seeds. `study.csv` has all of it in full.\n\n"
+                      "Exact rays are traced in 50 digits, those of rough surfaces in 19. Wavefronts have no such truth: both surfaces are traced in double, each to the sphere of its own chief ray; "
+                      "of flat facets most of the difference is then the tilt of the one facet that the chief ray meets.\n\n## Rows\n\n",
                       measured, rows.size());
   text += rows_table(rows) + orders_table(plots) + paper_table(study, rows);
   if (!plots.empty()) text += "\n## Plots\n";

@@ -11,6 +11,7 @@
 #include "lib/output/atomic_file.h"
 #include "lib/output/progress.h"
 #include "lib/output/text.h"
+#include "lib/prescription/study_reader.h"
 #include "tools/load.h"
 #include "tools/pictures.h"
 #include "tools/study_table.h"
@@ -45,7 +46,7 @@ struct Found {
   const study::Answers& answers;
   double wavelength_um;
   const study::Answer& truth;
-  double uncertainty, error, bound;
+  double uncertainty, error, worst, bound;
 };
 
 class Rows {
@@ -59,7 +60,7 @@ class Rows {
     records_.rows.push_back({study::name_of(found.quantity), varied, run.pattern, run.rays > 0 ? cell(run.rays) : "", run.grid > 0 ? cell(static_cast<std::int64_t>(run.grid)) : "",
                              cloud ? cell(static_cast<std::int64_t>(cloud->surface_number)) : "", cloud ? cloud->interpolation : "",
                              cell(static_cast<std::int64_t>(found.answers.field)), fmt::format("{:g}", found.wavelength_um * 1e3), cell(found.answers.launched), cell(found.answers.arrived),
-                             study::unit_of(found.quantity), value.size() == 1 ? cell(value.front()) : "", cell(found.error), percent(found.error), cell(found.bound), percent(found.bound),
+                             study::unit_of(found.quantity), value.size() == 1 ? cell(value.front()) : "", cell(found.error), percent(found.error), cell(found.worst), cell(found.bound), percent(found.bound),
                              cell(found.uncertainty), cell(run.processor_s.median), cell(run.processor_s.least), cell(run.processor_s.most), cell(run.wall_s.median),
                              cell(static_cast<std::int64_t>(run.processor_s.runs)), cloud ? cell(cloud->prepare_s) : "", study::reason_of(found.answers, found.quantity)});
   }
@@ -82,9 +83,17 @@ class Rows {
 
 }  // namespace
 
+bool is_of_the_other_kind(const std::string& file, const std::string& key, const std::string& what, const std::string& meant) {
+  const auto place = prescription::place_of_root_key(file, key);
+  if (!place) return false;
+  prescription::Findings findings;
+  findings.error(*place, what, meant);
+  return !report(findings);
+}
+
 output::Records system_records(const SystemStudy& system) {
   output::Records records{{{"answer", true}, {"varied", true}, {"pattern", true}, {"rays"}, {"grid"}, {"surface"}, {"interpolation", true}, {"field"}, {"wavelength_nm"}, {"launched"}, {"arrived"},
-                           {"unit", true}, {"value"}, {"error"}, {"error_percent"}, {"claim"}, {"claim_percent"}, {"truth_uncertainty"}, {"processor_s"}, {"processor_least_s"}, {"processor_most_s"},
+                           {"unit", true}, {"value"}, {"error"}, {"error_percent"}, {"worst_to_next"}, {"claim"}, {"claim_percent"}, {"truth_uncertainty"}, {"processor_s"}, {"processor_least_s"}, {"processor_most_s"},
                            {"wall_s"}, {"runs"}, {"prepare_s"}, {"reason", true}},
                           {}};
   Rows rows(records);
@@ -93,7 +102,7 @@ output::Records system_records(const SystemStudy& system) {
       for (std::size_t k = 0; k < curve.truths.size(); ++k) {
         const study::Answers& answers = step.run->answers[k];
         rows.add(step.run->grid > 0 ? "samples" : "rays", *step.run, nullptr,
-                 {curve.quantity, answers, system.sampling.wavelengths_um[answers.wavelength], curve.truths[k].value, curve.truths[k].uncertainty, step.errors[k], step.bounds[k]});
+                 {curve.quantity, answers, system.sampling.wavelengths_um[answers.wavelength], curve.truths[k].value, curve.truths[k].uncertainty, step.errors[k], step.worst[k], step.bounds[k]});
       }
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   for (const study::CloudChange& change : system.changes) {
@@ -105,7 +114,7 @@ output::Records system_records(const SystemStudy& system) {
         const study::Answer truth = k < finest.size() ? study::answer_of(finest[k], quantity) : study::Answer{};
         const study::Answers& answers = run.answers[k];
         rows.add("interpolation", run, change.run,
-                 {quantity, answers, system.sampling.wavelengths_um[answers.wavelength], truth, none, study::error_of(study::answer_of(answers, quantity), truth), none});
+                 {quantity, answers, system.sampling.wavelengths_um[answers.wavelength], truth, none, study::error_of(study::answer_of(answers, quantity), truth), none, none});
       }
     }
   }
@@ -113,6 +122,7 @@ output::Records system_records(const SystemStudy& system) {
 }
 
 int study_system(const StudyOptions& options) {
+  if (is_of_the_other_kind(options.system, "sagitta_study", "this is a study, not a system", fmt::format("give it as it is: sagitta study {} -o {}", options.system, options.folder))) return 1;
   const auto model = load_model(options.system);
   if (!model || !load_scene(*model, analysis::beam_of_job())) return 1;  // nothing is made where it is wrong
   if (!pictures(command)) return 1;

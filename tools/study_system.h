@@ -16,6 +16,9 @@ namespace sagitta::tools {
 // sagitta study --system SYSTEM.yaml -o DIR.
 int study_system(const StudyOptions& options);
 
+// True where the root of a file has the key of the other kind, `sagitta_study` of a study and `sagitta` of a system: then it says so, with the command that is meant.
+bool is_of_the_other_kind(const std::string& file, const std::string& key, const std::string& what, const std::string& meant);
+
 struct SystemStudy {
   const prescription::Model& model;
   const study::Sampling& sampling;

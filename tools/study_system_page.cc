@@ -205,7 +205,9 @@ std::string system_page(const SystemStudy& system, const std::vector<SystemPlot>
   for (const std::string& line : system.advice) text += fmt::format("- {}\n", plain(line));
   if (!system.truth_note.empty())
     text += fmt::format("\n{}\n\nErrors are those of the worst field and wavelength, in percent of its answer, or in the answer's unit where it is next to nothing: a spot below a hundredth of the wavelength, a "
-                        "wavefront below a thousandth of a wave. Of a Zernike coefficient the error is in µm. A claim is the largest error from there on, and what the truth may be off by. Times are processor "
+                        "wavefront below a thousandth of a wave. Of a Zernike coefficient the error is in µm. A claim is the largest error of the counts measured from there on, with those between this and the next "
+                        "row and, of random rays, other seeds; the largest rise of the error from one of them to the next, for what lies between; and what the truth may be off by. It is no bound: of counts "
+                        "that were not measured a few break it. Times are processor "
                         "time, all fields, wavelengths and threads together, medians where runs are short: launching, tracing, collecting, of wavefronts the Zernike fit too. Starting, reading, drawing and "
                         "writing files come on top, whatever the number of rays. `study.csv` has every field and wavelength, with the spread of the times.\n", plain(system.truth_note));
   if (!system.curves.empty()) text += answers_section(system);

@@ -11,6 +11,7 @@
 #include <map>
 #include <set>
 
+#include "lib/numerics/parallel.h"
 #include "lib/output/text.h"
 #include "lib/prescription/yaml_tree.h"
 #include "lib/trace/pattern.h"
@@ -46,9 +47,11 @@ std::string basis_of(const StudyFile& study) {
   return hash_of(basis);
 }
 
-std::string settings_text(const Parameters& settings) {
+// `threads` 0 is so many.
+std::string settings_text(const Parameters& settings, int thread_count, std::string_view without = {}) {
   std::string text;
-  for (const auto& [key, value] : settings.numbers) text += fmt::format("{}: {}\n", key, value);
+  for (const auto& [key, value] : settings.numbers)
+    if (key != without) text += fmt::format("{}: {}\n", key, key == "threads" && value == 0 ? thread_count : value);
   for (const auto& [key, value] : settings.texts) text += fmt::format("{}: {}\n", key, value);
   return text;
 }
@@ -61,7 +64,7 @@ struct Word {
 };
 constexpr Word words[] = {{"surface", "{}", true}, {"field", "{}", true}, {"points_per_mm2", "{} per mm²", false}, {"rings", "{} rings", true}, {"meridians", "{} meridians", true}, {"tolerance_mm", "to {} mm", false},
                           {"margin_spacings", "margin {}", true}, {"cloud_radius_mm", "radius {} mm", true}, {"shape_spacings", "shape {}", true}, {"search", "{}", true}, {"pattern", "{}", true},
-                          {"rays", "{} rays", false}, {"threads", "{}", true}, {"rms_um", "roughness {} µm", true},
+                          {"rays", "{} rays", false}, {"compared_rays", "{} compared", false}, {"prepare_repeats", "prepared {} times", false}, {"threads", "{}", true}, {"rms_um", "roughness {} µm", true},
                           {"correlation_length_um", "correlated over {} µm", true}, {"truth", "against the {} surface", true}, {"seed", "seed {}", false}};
 
 // A field as people name it: "40°", "(10°, 20°)", "5 mm".
@@ -89,6 +92,8 @@ bool is_of_use(std::string_view key, const Parameters& settings) {
   const bool is_sampled = interpolation != study::Variant::as_prescribed;
   if (std::find(of_points.begin(), of_points.end(), key) != of_points.end() && !is_sampled) return false;
   if (key == "tolerance_mm") return !is_sampled;
+  if (key == "margin_spacings") return !(settings.number("cloud_radius_mm") > 0);
+  if (key == "compared_rays") return settings.number("compared_rays") < settings.number("rays");
   if (key == "shape_spacings") return interpolation == "multiquadric";
   if (key == "correlation_length_um" || key == "truth") return settings.number("rms_um") != 0;
   return true;
@@ -98,7 +103,7 @@ void name_rows(const StudyFile& study, std::vector<StudyRow>& rows) {
   std::map<std::string, std::set<std::string>> values;
   for (const StudyRow& row : rows)
     for (const Word& word : words)
-      if (is_of_use(word.key, *row.settings)) values[word.key].insert(value_of(study, *row.settings, word.key));
+      if (is_of_use(word.key, *row.settings) || std::string_view(word.key) == "compared_rays") values[word.key].insert(value_of(study, *row.settings, word.key));
   const auto is_as_prescribed = [](const StudyRow& row) { return row.settings->text("interpolation") == study::Variant::as_prescribed; };
   const bool all_as_prescribed = std::all_of(rows.begin(), rows.end(), is_as_prescribed);
   for (StudyRow& row : rows) {
@@ -220,10 +225,12 @@ double StudyRow::number(std::string_view column) const {
   return parsed.ok ? parsed.value : std::numeric_limits<double>::quiet_NaN();
 }
 
-std::vector<StudyRow> rows_of(const StudyFile& study) {
+std::vector<StudyRow> rows_of(const StudyFile& study, int thread_count) {
   const std::string basis = basis_of(study);
   std::vector<StudyRow> rows;
-  for (const Parameters& settings : study.variants) rows.push_back({&settings, "", "", "", "", hash_of(basis + settings_text(settings)), {}});
+  const int threads = numerics::thread_count_of(thread_count);
+  for (const Parameters& settings : study.variants)
+    rows.push_back({&settings, "", "", "", "", settings_text(settings, threads, "seed"), hash_of(basis + settings_text(settings, threads)), {}});
   name_rows(study, rows);
   return rows;
 }
@@ -237,9 +244,9 @@ void fill(StudyRow& row, const StudyFile& study, const MeasuredRow& measured) {
   row.cells = in_order(cells);
 }
 
-int take_finished(std::vector<StudyRow>& rows, const StudyFile& study, std::string_view csv) {
+Finished take_finished(std::vector<StudyRow>& rows, const StudyFile& study, std::string_view csv) {
   const auto earlier = output::rows_of_csv(csv, study_columns());
-  if (!earlier) return 0;
+  if (!earlier) return {0, 0, true};
   int count = 0;
   for (StudyRow& row : rows) {
     const auto found = std::find_if(earlier->begin(), earlier->end(), [&](const auto& cells) { return cells[column_at("key")] == row.key && cells[column_at("failed")].empty(); });
@@ -249,7 +256,7 @@ int take_finished(std::vector<StudyRow>& rows, const StudyFile& study, std::stri
     row.cells[column_at("variant")] = row.name;
     ++count;
   }
-  return count;
+  return {count, static_cast<int>(earlier->size()) - count, false};
 }
 
 output::Records records_of(const std::vector<StudyRow>& rows) {
@@ -276,7 +283,7 @@ std::vector<Ensemble> ensembles_of(const std::vector<StudyRow>& rows) {
   std::map<std::string_view, std::size_t> places;
   for (const StudyRow& row : rows) {
     if (!row.is_measured() || row.has_failed()) continue;
-    const auto [place, is_new] = places.emplace(row.of_any_seed, all.size());
+    const auto [place, is_new] = places.emplace(row.settings_but_seed, all.size());
     if (is_new) all.emplace_back();
     all[place->second].rows.push_back(&row);
   }

@@ -23,6 +23,7 @@ struct StudyRow {
   std::string series;        // the name without density, number of rays, tolerance and seed
   std::string of_any_rays;   // the name without the number of rays and the seed
   std::string of_any_seed;   // the name without the seed
+  std::string settings_but_seed;
   std::string key;           // what the measurement depends on, as a hash: settings, system, program, processor
   std::vector<std::string> cells;
 
@@ -35,7 +36,7 @@ struct StudyRow {
 const std::vector<output::RecordColumn>& study_columns();
 
 // The variants of a study in its order, none measured.
-std::vector<StudyRow> rows_of(const prescription::StudyFile& study);
+std::vector<StudyRow> rows_of(const prescription::StudyFile& study, int thread_count);
 
 struct MeasuredRow {
   study::Measured measured;
@@ -43,8 +44,12 @@ struct MeasuredRow {
   double own_mib = std::numeric_limits<double>::quiet_NaN();  // of it, what it did not begin with: the program and the exact rays
 };
 void fill(StudyRow& row, const prescription::StudyFile& study, const MeasuredRow& measured);
-// Takes the rows of an earlier study.csv that are finished and have the same keys; how many.
-int take_finished(std::vector<StudyRow>& rows, const prescription::StudyFile& study, std::string_view csv);
+// Takes the rows of an earlier study.csv that are finished and have the same keys.
+struct Finished {
+  int taken = 0, others = 0;      // rows; others are of other settings, or failed
+  bool is_unreadable = false;     // it is no study.csv of this kind
+};
+Finished take_finished(std::vector<StudyRow>& rows, const prescription::StudyFile& study, std::string_view csv);
 
 output::Records records_of(const std::vector<StudyRow>& rows);
 

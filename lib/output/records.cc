@@ -41,6 +41,7 @@ Cells next_line(std::string_view& text) {
     if (text[i] == '"' && is_quoted && i + 1 < text.size() && text[i + 1] == '"') cells.back() += text[i++];
     else if (text[i] == '"') is_quoted = !is_quoted;
     else if (text[i] == ',' && !is_quoted) cells.emplace_back();
+    else if (text[i] == '\r' && !is_quoted && text.substr(i + 1, 1) == "\n") continue;  // some editor's line end
     else cells.back() += text[i];
   }
   text.remove_prefix(std::min(text.size(), i + 1));

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -154,10 +155,18 @@ void check_variant(const Parameters& variant, const YamlNode& block, const Model
     findings.error(at("rings"), fmt::format("rings and meridians have no use with arrangement: {}", variant.text("arrangement")), "they are for arrangement: rings");
   else if ((variant.number("rings") > 0) != (variant.number("meridians") > 0))
     findings.error(at(variant.number("rings") > 0 ? "rings" : "meridians"), "rings and meridians stand together", "give both, or a density");
+  else if (is_on_rings && variant.number("points_per_mm2") > 0)
+    findings.error(at("points_per_mm2"), "a density beside rings and meridians", "keep one of them: the one follows from the others");
   else if (is_on_rings && !(variant.number("margin_spacings") < variant.number("rings")))
     findings.error(at("margin_spacings"), fmt::format("margin_spacings must be less than rings, {:g}, not {:g}", variant.number("rings"), variant.number("margin_spacings")));
   if (is_sampled && !is_on_rings && !(variant.number("points_per_mm2") > 0))
     findings.error(block.place, fmt::format("interpolation {} needs a density", variant.text("interpolation")), "give points_per_mm2 or points_per_mm, or interpolation: analytic");
+  for (const char* key : {"points_per_mm2", "rings", "meridians", "cloud_radius_mm"})
+    if (!is_sampled && variant.number(key) > 0) findings.error(at(key), fmt::format("{} has no use with interpolation: analytic", key), "there are no points: put it into a block of its own");
+  if (variant.number("cloud_radius_mm") > 0 && variant.places.contains("margin_spacings"))
+    findings.error(at("cloud_radius_mm"), "cloud_radius_mm beside margin_spacings", "keep one of them");
+  if (variant.places.contains("truth") && !(variant.number("rms_um") > 0))
+    findings.error(at("truth"), "a truth without a roughness", "give rms_um beside it");
   if (variant.text("search") == "nearest_vertex" && variant.text("interpolation") != "linear")
     findings.error(at("search"), fmt::format("the nearest vertex is looked for on linear facets, not with interpolation: {}", variant.text("interpolation")),
                    "put it into a block of its own");
@@ -170,6 +179,7 @@ void check_variant(const Parameters& variant, const YamlNode& block, const Model
 
 std::vector<Parameters> read_variants(const YamlNode& node, const StudyFile& study, const std::string& surface, Findings& findings) {
   std::vector<Parameters> variants;
+  std::map<std::pair<decltype(Parameters::numbers), decltype(Parameters::texts)>, std::size_t> known;
   if (node.kind != Kind::sequence || node.items.empty()) {
     refuse(node, "variants", "a list of at least one block of settings", findings);
     return variants;
@@ -181,6 +191,9 @@ std::vector<Parameters> read_variants(const YamlNode& node, const StudyFile& stu
       if (findings.error_count() > errors_before) break;
       variants.push_back(with_fallbacks(given, surface, study.field));
       check_variant(variants.back(), block, study.system, findings);
+      const auto [first, is_new] = known.emplace(std::pair(variants.back().numbers, variants.back().texts), variants.size());
+      if (!is_new && findings.error_count() == errors_before)
+        findings.error(block.place, fmt::format("variants {} and {} are the same", first->second, variants.size()), "each is to stand once, over all blocks");
     }
   }
   if (variants.size() > most_variants) findings.error(node.place, fmt::format("{} variants are more than {}", variants.size(), most_variants), "make several studies");
@@ -254,6 +267,14 @@ StudyReadResult read_study(const std::string& file) {
   Findings ordered = in_order(findings, {{file, {}}});
   if (findings.has_errors()) return {std::nullopt, std::move(ordered)};
   return {std::move(study), std::move(ordered)};
+}
+
+std::optional<Place> place_of_root_key(const std::string& file, std::string_view key) {
+  Findings unused;
+  const YamlNode::Pointer root = read_yaml(file, unused);
+  if (!root) return std::nullopt;
+  const auto found = std::find_if(root->entries.begin(), root->entries.end(), [&](const YamlNode::Entry& entry) { return entry.key == key; });
+  return found == root->entries.end() ? std::nullopt : std::optional(found->key_place);
 }
 
 std::optional<std::string> find_study(const std::string& name) {

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "lib/prescription/diagnostics.h"
@@ -20,6 +21,9 @@ struct StudyReadResult {
 inline constexpr std::size_t most_variants = 10'000;
 
 StudyReadResult read_study(const std::string& file);
+
+// Where the root of a YAML file has a key, `sagitta_study` of a study or `sagitta` of a prescription; none where it has not, or is no YAML.
+std::optional<Place> place_of_root_key(const std::string& file, std::string_view key);
 
 // The file of a study: `name` itself where there is such a file, else systems/studies/NAME.yaml on the search path; none where there is neither.
 std::optional<std::string> find_study(const std::string& name);

@@ -161,7 +161,8 @@ std::string truth_note(const std::vector<Curve>& curves, const std::vector<Cloud
     off.push_back(fmt::format("{} ({})", text_of(curve.uncertainty, curve.quantity), curve.quantity == Quantity::zernike ? "a Zernike coefficient" : name_of(curve.quantity)));
   }
   if (finest.empty()) return {};
-  std::string note = fmt::format("The truth here is the finest itself, {}, by the same double-precision code: it is not independent. By its own convergence it may be off by {}, which every figure includes.",
+  std::string note = fmt::format("The truth here is the finest itself, {}, by the same double-precision code: it is not independent. By its own convergence it may be off by {}, which every figure includes. A figure is the worst of "
+                                 "the counts measured from there on, those between included, and the largest rise of the error from one of them to the next: what was measured, no bound.",
                                  fmt::join(finest, " and "), fmt::join(off, ", "));
   if (!changes.empty()) note += fmt::format(" Of points it is {}, which does not know what lies between them.", changes.front().run->interpolation);
   return note;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a sampling (sampling.h) says to somebody who has to choose: lines of text. Errors are what may be claimed (convergence.h), rounded up.
+// What a sampling (sampling.h) says to somebody who has to choose: lines of text. Errors are what may be claimed (convergence.h), rounded up:
+// of the counts that were measured from there on, and no more.
 #pragma once
 
 #include <string>

@@ -5,6 +5,46 @@
 #include <cmath>
 
 namespace sagitta::study {
+namespace {
+
+constexpr double least_order = 0.5;       // that (2) covers
+constexpr std::size_t enough_counts = 4;  // between a rung and the next, for its m
+
+// w
+double worst_of(const Rung& rung, const Answer& truth) {
+  double worst = 0;
+  for (const Answer& answer : rung.answers) worst = std::max(worst, error_of(answer, truth));
+  return worst;
+}
+
+// m, of what is measured.
+std::vector<double> worst_from_there_on(std::span<const Rung> rungs, const Answer& truth) {
+  std::vector<double> result(rungs.size());
+  double worst = 0, rise = 0, next = 0;
+  for (std::size_t i = rungs.size(); i-- > 0;) {
+    for (std::size_t j = rungs[i].answers.size(); j-- > 0;) {
+      const double error = error_of(rungs[i].answers[j], truth);
+      worst = std::max(worst, error);
+      rise = std::fmax(rise, next - error);
+      next = error;
+    }
+    result[i] = worst + rise;
+  }
+  return result;
+}
+
+// Over the last rungs, of too few counts.
+void carry_on(std::span<const Rung> rungs, std::vector<double>& m, double clear_of) {
+  std::size_t end = rungs.size();
+  while (end > 0 && rungs[end - 1].answers.size() <= enough_counts) --end;
+  std::vector<double> counts;
+  for (const Rung& rung : rungs.first(end)) counts.push_back(rung.count);
+  const Order law = law_of(counts, std::span(m).first(end), clear_of);
+  if (!(law.slope < 0)) return;
+  for (std::size_t i = end; i < m.size(); ++i) m[i] = std::max(m[i], m[end - 1] * std::pow(rungs[i].count / counts.back(), law.slope));
+}
+
+}  // namespace
 
 double error_of(const Answer& answer, const Answer& truth) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -27,28 +67,30 @@ Order law_of(std::span<const double> counts, std::span<const double> errors, dou
   return order_of(x, y);
 }
 
-Truth truth_of(std::span<const double> counts, std::span<const Answer> answers) {
-  Truth truth{answers.back()};
-  if (answers.size() < 2 || truth.value.empty()) return truth;
-  std::vector<double> errors;
-  for (const Answer& answer : answers) errors.push_back(error_of(answer, truth.value));
+Truth truth_of(std::span<const Rung> rungs) {
+  Truth truth{rungs.back().answers.front()};
+  if (rungs.size() < 2 || truth.value.empty()) return truth;
+  std::vector<double> counts, errors;
+  for (const Rung& rung : rungs) {
+    counts.push_back(rung.count);
+    errors.push_back(worst_of(rung, truth.value));
+  }
   const double last = errors[errors.size() - 2];
   truth.clear_of = 2 * last;
-  truth.uncertainty = last;
   const Order law = law_of(counts, errors, truth.clear_of);
-  const double at_finest = law.factor * std::pow(counts.back(), law.slope);
-  if (law.slope < 0 && at_finest > last) truth.uncertainty = at_finest;
+  const double at_finest = law.slope < 0 ? law.factor * std::pow(counts.back(), law.slope) : 0;
+  truth.uncertainty = std::max(last, at_finest) / std::min(1.0, std::pow(counts.back() / counts[counts.size() - 2], least_order) - 1);
   return truth;
 }
 
-Settling settling(std::span<const Answer> answers, const Truth& truth) {
+Settling settling(std::span<const Rung> rungs, const Truth& truth) {
   Settling result;
-  for (const Answer& answer : answers) result.error.push_back(error_of(answer, truth.value));
-  result.bound = result.error;
-  for (std::size_t i = result.bound.size(); i-- > 0;) {
-    const double finer = i + 1 < result.bound.size() ? result.bound[i + 1] : 0;
-    result.bound[i] = std::max(result.error[i], finer);
+  for (const Rung& rung : rungs) {
+    result.error.push_back(error_of(rung.answers.front(), truth.value));
+    result.worst.push_back(worst_of(rung, truth.value));
   }
+  result.bound = worst_from_there_on(rungs, truth.value);
+  carry_on(rungs, result.bound, truth.clear_of);
   for (double& bound : result.bound) bound += truth.uncertainty;
   return result;
 }

@@ -30,6 +30,15 @@ constexpr double fit_weight = 500;  // of a sample of a wavefront: its share of 
 constexpr std::int64_t least_finest_rays = 100'000;
 constexpr int least_finest_grid = 128;
 
+// Where counts lie between a rung and the next, of a logarithmic scale: multiples of the golden ratio, which come near no simple part of it.
+std::vector<double> places_between(double rung, double next, double finest) {
+  std::vector<double> places;
+  const int most = std::clamp(static_cast<int>(finest / (2 * rung)), 1, 8);
+  for (int i = 1; i <= most; ++i) places.push_back(rung * std::pow(next / rung, i * std::numbers::phi - std::floor(i * std::numbers::phi)));
+  std::sort(places.begin(), places.end());
+  return places;
+}
+
 std::vector<std::int64_t> ray_ladder(double most) {
   std::vector<std::int64_t> rungs;
   for (std::int64_t decade = 100;; decade *= 10)
@@ -40,6 +49,7 @@ std::vector<std::int64_t> ray_ladder(double most) {
 }
 
 double samples_of(int grid) { return std::numbers::pi * std::pow(grid / 2 - 1, 2); }  // about
+int grid_of(double samples) { return 2 * static_cast<int>(std::lround(std::sqrt(samples / std::numbers::pi))) + 2; }  // its inverse; an odd grid has the samples of the even one before
 
 // A system compiled for its job: of large clouds a part, until a ray leaves it.
 class CompiledSystem {
@@ -87,11 +97,17 @@ Answers answers_of(const JobResult& result) {
   return answers;
 }
 
+std::vector<Answers> answers_of(const std::vector<JobResult>& results) {
+  std::vector<Answers> answers;
+  for (const JobResult& result : results) answers.push_back(answers_of(result));
+  return answers;
+}
+
 // A long run counts as it is; before short ones, of which there are several, one warms the caches.
 Run measured(CompiledSystem& system, const JobRequest& request, const std::string& pattern) {
   Run run{request.want_spot ? pattern : "", request.want_spot ? request.ray_count : 0, request.want_wavefront ? request.wavefront.size : 0, {}, {}, {}};
   const CompiledSystem::Timed first = system.run(request);
-  for (const JobResult& result : first.results) run.answers.push_back(answers_of(result));
+  run.answers = answers_of(first.results);
   std::vector<double> processor, wall;
   const auto add = [&](const Times& times) {
     processor.push_back(times.processor);
@@ -181,14 +197,34 @@ Sampling sample_system(const prescription::Model& system, const SamplingRequest&
     std::function<void()> run;
   };
   std::vector<Work> work;
-  for (const char* pattern : patterns) {
-    const std::size_t at = sampling.spots.size();
-    sampling.spots.emplace_back();
-    for (const std::int64_t count : rays)
-      work.push_back({prices.of(count, 0), [&, at, pattern, count] { sampling.spots[at].push_back(measured(compiled, job_of(request, pattern, count, 0), pattern)); }});
+  const auto beyond = [&](std::vector<Run>& runs, JobRequest job, std::int64_t count, int grid) {
+    work.push_back({prices.of(count, grid), [&, job] { runs.back().beyond.push_back(answers_of(compiled.run(job).results)); }});
+  };
+  sampling.spots.resize(std::size(patterns));
+  for (std::size_t at = 0; at < std::size(patterns); ++at) {
+    const char* pattern = patterns[at];
+    std::vector<Run>& runs = sampling.spots[at];
+    JobRequest job = job_of(request, pattern, rays.front(), 0);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      work.push_back({prices.of(rays[i], 0), [&, pattern, count = rays[i]] { runs.push_back(measured(compiled, job_of(request, pattern, count, 0), pattern)); }});
+      if (i + 1 == rays.size()) break;
+      for (const double place : places_between(static_cast<double>(rays[i]), static_cast<double>(rays[i + 1]), static_cast<double>(rays.back()))) {
+        job.ray_count = std::llround(place);
+        ++job.pattern.seed;
+        beyond(runs, job, job.ray_count, 0);
+      }
+    }
   }
-  for (const int grid : sizes)
-    work.push_back({prices.of(0, grid), [&, grid] { sampling.wavefronts.push_back(measured(compiled, job_of(request, patterns[0], 0, grid), "")); }});
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    work.push_back({prices.of(0, sizes[i]), [&, grid = sizes[i]] { sampling.wavefronts.push_back(measured(compiled, job_of(request, patterns[0], 0, grid), "")); }});
+    if (i + 1 == sizes.size()) break;
+    int last = sizes[i];
+    for (const double place : places_between(samples_of(sizes[i]), samples_of(sizes[i + 1]), samples_of(sizes.back()))) {
+      const int grid = grid_of(place);
+      if (grid > last && grid < sizes[i + 1]) beyond(sampling.wavefronts, job_of(request, patterns[0], 0, grid), 0, grid);
+      last = std::max(last, grid);
+    }
+  }
   for (std::size_t i = 0; i < system.surfaces.size(); ++i) {
     const prescription::Surface& surface = system.surfaces[i];
     if (!surface.shape.cloud) continue;

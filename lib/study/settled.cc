@@ -29,19 +29,28 @@ Order order_of_curve(const Curve& curve, double clear_of) {
   return law_of(counts, errors, clear_of);
 }
 
+std::vector<Rung> rungs_of(Quantity quantity, std::span<const Run> runs, std::size_t k) {
+  std::vector<Rung> rungs;
+  for (const Run& run : runs) {
+    Rung rung{static_cast<double>(run.answers.front().launched), {answer_of(run.answers[k], quantity)}};
+    for (const std::vector<Answers>& answers : run.beyond) rung.answers.push_back(answer_of(answers[k], quantity));
+    rungs.push_back(std::move(rung));
+  }
+  return rungs;
+}
+
 Curve curve_of(const Sampling& sampling, Quantity quantity, std::span<const Run> runs, const std::vector<Truth>& truths) {
   Curve curve{quantity, runs.front().pattern, truths, {}, {}, {}};
-  for (const Run& run : runs) curve.steps.push_back({&run, static_cast<double>(run.answers.front().launched), {}, {}, {}, {}});
+  for (const Run& run : runs) curve.steps.push_back({&run, static_cast<double>(run.answers.front().launched), {}, {}, {}, {}, {}});
   Worst clear_of;
   for (std::size_t k = 0; k < truths.size(); ++k) {
-    std::vector<Answer> answers;
-    for (const Run& run : runs) answers.push_back(answer_of(run.answers[k], quantity));
-    const Settling settled = settling(answers, truths[k]);
+    const Settling settled = settling(rungs_of(quantity, runs, k), truths[k]);
     const double wavelength = wavelength_of(sampling, runs.front().answers[k]);
     const bool has_truth = !truths[k].value.empty();
     for (std::size_t i = 0; i < curve.steps.size(); ++i) {
       Step& step = curve.steps[i];
       step.errors.push_back(has_truth ? settled.error[i] : nan);
+      step.worst.push_back(has_truth ? settled.worst[i] : nan);
       step.bounds.push_back(has_truth ? settled.bound[i] : nan);
       add(step.error, quantity, step.errors.back(), truths[k].value, wavelength);
       add(step.bound, quantity, step.bounds.back(), truths[k].value, wavelength);
@@ -55,14 +64,8 @@ Curve curve_of(const Sampling& sampling, Quantity quantity, std::span<const Run>
 }
 
 std::vector<Truth> truths_of(Quantity quantity, std::span<const Run> runs) {
-  std::vector<double> counts;
-  for (const Run& run : runs) counts.push_back(static_cast<double>(run.answers.front().launched));
   std::vector<Truth> truths;
-  for (std::size_t k = 0; k < runs.front().answers.size(); ++k) {
-    std::vector<Answer> answers;
-    for (const Run& run : runs) answers.push_back(answer_of(run.answers[k], quantity));
-    truths.push_back(truth_of(counts, answers));
-  }
+  for (std::size_t k = 0; k < runs.front().answers.size(); ++k) truths.push_back(truth_of(rungs_of(quantity, runs, k)));
   return truths;
 }
 

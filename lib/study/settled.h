@@ -38,7 +38,7 @@ struct Worst {
 struct Step {
   const Run* run = nullptr;
   double count = 0;               // rays that were launched, of the first field and wavelength
-  std::vector<double> errors, bounds;  // by field, then wavelength, in the quantity's unit; NaN where the truth has no answer
+  std::vector<double> errors, worst, bounds;  // e, w and b; by field, then wavelength, in the quantity's unit; NaN where the truth has no answer
   Worst error, bound;
 };
 

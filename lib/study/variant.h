@@ -76,6 +76,8 @@ struct Row {
   double sampling_s = 0, comparing_s = 0, launching_ns_per_ray = 0;  // by the clock, beside what is measured: points, comparison, launching (price.h)
 };
 
+inline constexpr double most_points = 1e8;  // of a cloud: some 60 GB
+
 struct Measured {
   std::optional<Row> row;
   std::string reason;  // why there is none

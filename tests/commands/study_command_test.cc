@@ -104,6 +104,48 @@ TEST(StudyCommand, keeps_finished_rows_and_measures_what_is_new) {
   EXPECT_THAT(changed.err, Not(HasSubstr("kept")));
 }
 
+// Found by review, 2026-11-22: tables of another kind were replaced without a word, rows of `threads: 0` kept for any number of threads, and variants
+// that differ in compared_rays alone shown as seeds.
+TEST(StudyCommand, keeps_its_hands_off_tables_of_other_kinds) {
+  const Folder folder;
+  ASSERT_EQ(run_study(folder, few).status, 0);
+  const std::string before = read_text(folder.path("out/study.csv"));
+  const Outcome system = run_program("study --system '" + folder.path("lens.yaml") + "' -o '" + folder.path("out") + "'");
+  EXPECT_EQ(system.status, 1);
+  EXPECT_THAT(system.err, HasSubstr("would be lost\n  hint: give another folder"));
+  EXPECT_EQ(read_text(folder.path("out/study.csv")), before);
+  std::ofstream(folder.path("out/study.csv")) << "a,b\n1,2\n";
+  EXPECT_EQ(run_study(folder, few).status, 1);
+  EXPECT_EQ(read_text(folder.path("out/study.csv")), "a,b\n1,2\n");
+}
+
+TEST(StudyCommand, takes_tables_with_the_line_ends_of_other_editors) {
+  const Folder folder;
+  ASSERT_EQ(run_study(folder, few).status, 0);
+  std::string csv;
+  for (const std::string& line : lines_of(read_text(folder.path("out/study.csv")))) csv += line + "\r\n";
+  std::ofstream(folder.path("out/study.csv"), std::ios::binary) << csv;
+  EXPECT_THAT(run_study(folder, few).err, HasSubstr("4 of 4 rows are kept"));
+}
+
+TEST(StudyCommand, all_threads_are_another_variant_where_they_are_others) {
+  const Folder folder;
+  const std::string study = "variants:\n  - {points_per_mm2: 4, rays: 300, threads: [0, 1]}\n";
+  ASSERT_EQ(run_study(folder, study).status, 0);  // --threads 1
+  const Outcome two = run_program("study '" + folder.path("study.yaml") + "' -o '" + folder.path("out") + "' --threads 2");
+  EXPECT_THAT(two.err, HasSubstr("1 of 2 rows are kept"));
+  EXPECT_THAT(two.err, HasSubstr("1 rows of an earlier run are left out"));
+}
+
+TEST(StudyCommand, shows_every_setting_but_the_seed_as_a_line_of_its_own) {
+  const Folder folder;
+  ASSERT_EQ(run_study(folder, "variants:\n  - {points_per_mm2: 4, rays: 300, compared_rays: [10, 300]}\n").status, 0);
+  const std::string page = read_text(folder.path("out/study.md"));
+  EXPECT_THAT(page, HasSubstr("| linear regular 10 compared |"));
+  EXPECT_THAT(page, HasSubstr("| linear regular |"));
+  EXPECT_THAT(page, Not(HasSubstr("±  |")));
+}
+
 // The cells of the row of a Markdown table that begins so, from its second column on.
 std::vector<std::string> cells_of(const std::string& page, const std::string& first) {
   for (const std::string& line : lines_of(page)) {
@@ -120,7 +162,7 @@ TEST(StudyCommand, shows_variants_that_differ_in_the_seed_alone_as_their_mean) {
   const Folder folder;
   const Outcome run = run_study(folder,
                                 "variants:\n  - {points_per_mm2: [4, 16, 64], rays: 300, arrangement: random, seed: [1, 2, 3]}\n  - {points_per_mm2: 16, rays: 300, seed: 2}\n"
-                                "  - {points_per_mm2: 1e7, rays: 300, arrangement: jittered, seed: [1, 2]}\n"
+                                "  - {points_per_mm2: 5e6, rays: 300, arrangement: jittered, seed: [1, 2]}\n"
                                 "paper:\n  - {where: {points_per_mm2: 16, arrangement: random}, spot_rms_error_percent: 1}\n",
                                 "ulimit -v 1000000; ");
 #if defined(__SANITIZE_ADDRESS__)
@@ -161,8 +203,8 @@ TEST(StudyCommand, shows_variants_that_differ_in_the_seed_alone_as_their_mean) {
   EXPECT_EQ(page.find("seed 1 |"), std::string::npos);
   EXPECT_EQ(cells_of(page, "linear regular 16 per mm² seed 2").at(0), "1");  // alone: under its own name, without a deviation
   EXPECT_EQ(cells_of(page, "linear regular 16 per mm² seed 2").at(3).find("±"), std::string::npos);
-  EXPECT_THAT(page, HasSubstr("- linear jittered 10000000 per mm² seed 1: not enough memory"));
-  EXPECT_THAT(page, HasSubstr("- linear jittered 10000000 per mm² seed 2: not enough memory"));
+  EXPECT_THAT(page, HasSubstr("- linear jittered 5000000 per mm² seed 1: not enough memory"));
+  EXPECT_THAT(page, HasSubstr("- linear jittered 5000000 per mm² seed 2: not enough memory"));
   // Equal steps of the spacing: the slope of least squares is that from the first mean to the last.
   EXPECT_NEAR(std::stod(cells_of(page, "linear random").at(1)), (angles[2] - angles[0]) / (spacings[2] - spacings[0]), 5.1e-4);
   EXPECT_EQ(cells_of(page, "linear random").at(3), "3");
@@ -228,16 +270,16 @@ TEST(StudyCommand, a_variant_that_fails_takes_no_other_with_it) {
   GTEST_SKIP() << "AddressSanitizer takes more address space than the limit";
 #endif
   const Folder folder;
-  const Outcome run = run_study(folder, "variants:\n  - {points_per_mm2: [4, 1e7, 16], rays: 300}\n", "ulimit -v 1000000; ");
+  const Outcome run = run_study(folder, "variants:\n  - {points_per_mm2: [4, 5e6, 16], rays: 300}\n", "ulimit -v 1000000; ");
   EXPECT_EQ(run.status, 1);
-  EXPECT_THAT(run.err, HasSubstr("linear regular 10000000 per mm²: not enough memory"));
+  EXPECT_THAT(run.err, HasSubstr("linear regular 5000000 per mm²: not enough memory"));
   EXPECT_THAT(run.out, HasSubstr("2 of 3 variants measured"));
   const json found = json::parse(read_text(folder.path("out/study.json")));
   ASSERT_EQ(found["rows"].size(), 3u);
   EXPECT_EQ(found["rows"][1]["failed"], "not enough memory");
   EXPECT_TRUE(found["rows"][1]["distance_rms_um"].is_null());
   EXPECT_GT(found["rows"][2]["distance_rms_um"].get<double>(), 0);
-  EXPECT_THAT(read_text(folder.path("out/study.md")), HasSubstr("- linear regular 10000000 per mm²: not enough memory"));
+  EXPECT_THAT(read_text(folder.path("out/study.md")), HasSubstr("- linear regular 5000000 per mm²: not enough memory"));
 }
 
 TEST(StudyCommand, variants_may_be_of_other_surfaces_and_fields) {

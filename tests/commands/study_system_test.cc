@@ -40,7 +40,8 @@ TEST(StudySystemCommand, writes_tables_plots_and_advice) {
   int spots = 0, truths = 0;
   for (const json& row : found["rows"]) {
     EXPECT_GT(row["processor_s"].get<double>(), 0);
-    EXPECT_GE(row["claim"].get<double>(), row["error"].get<double>());
+    EXPECT_GE(row["worst_to_next"].get<double>(), row["error"].get<double>());
+    EXPECT_GE(row["claim"].get<double>(), row["worst_to_next"].get<double>());
     EXPECT_EQ(row["reason"], "");
     truths += row["error"] == 0.0;
     if (row["answer"] != "spot RMS") continue;
@@ -50,7 +51,7 @@ TEST(StudySystemCommand, writes_tables_plots_and_advice) {
   EXPECT_EQ(spots, 120);
   EXPECT_GE(truths, 3 * 4);
   const std::string csv = read_text(out + "/study.csv");
-  EXPECT_THAT(csv, testing::StartsWith("answer,varied,pattern,rays,grid,surface,interpolation,field,wavelength_nm,launched,arrived,unit,value,error,error_percent,claim,claim_percent,"));
+  EXPECT_THAT(csv, testing::StartsWith("answer,varied,pattern,rays,grid,surface,interpolation,field,wavelength_nm,launched,arrived,unit,value,error,error_percent,worst_to_next,claim,claim_percent,"));
 
   // The answers of `trace` are among the rows, to the last bit.
   ASSERT_EQ(run_program("trace '" + system + "' -o '" + folder.path("trace") + "'").status, 0);
@@ -115,6 +116,19 @@ TEST(StudySystemCommand, refuses_what_is_wrong) {
     EXPECT_EQ(usage.status, 2) << arguments;
     EXPECT_NE(usage.err, "") << arguments;
   }
+  EXPECT_FALSE(fs::exists(out));
+}
+
+// One message, with the other way.
+TEST(StudySystemCommand, knows_a_study_from_a_system) {
+  const Folder folder;
+  const std::string out = folder.path("out"), system = folder.file("lens.yaml", lens), study = folder.file("study.yaml", "# of two lines\nsagitta_study: 1\nname: lens\n");
+  const Outcome as_system = run_program("study --system '" + study + "' -o '" + out + "'");
+  EXPECT_EQ(as_system.status, 1);
+  EXPECT_EQ(as_system.err, study + ":2:1: error: this is a study, not a system\n  hint: give it as it is: sagitta study " + study + " -o " + out + "\n");
+  const Outcome as_study = run_program("study '" + system + "' -o '" + out + "'");
+  EXPECT_EQ(as_study.status, 1);
+  EXPECT_EQ(as_study.err, system + ":1:1: error: this is a system, not a study\n  hint: give it with --system: sagitta study --system " + system + " -o " + out + "\n");
   EXPECT_FALSE(fs::exists(out));
 }
 

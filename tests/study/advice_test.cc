@@ -29,7 +29,7 @@ class Curves {
     Curve result{quantity, pattern, {}, {}, uncertainty, {}};
     for (const Made& made : steps) {
       runs_.push_back({pattern, made.rays, made.grid, {}, {made.seconds, made.seconds, made.seconds, 3}, {}});
-      result.steps.push_back({&runs_.back(), 0, {}, {}, {}, made.bound});
+      result.steps.push_back({&runs_.back(), 0, {}, {}, {}, {}, made.bound});
     }
     return result;
   }
@@ -53,7 +53,8 @@ TEST(Advice, NamesTheUsualRaysAndTheFewestForATarget) {
                           "64 x 64 samples give every Zernike coefficient to 0.081 µm in 12 ms; 128 x 128 to 2.1e-5 µm in 1.2 s"));
   EXPECT_EQ(truth_note(curves, {}),
             "The truth here is the finest itself, 1e5 hexapolar rays and 128 x 128 samples, by the same double-precision code: it is not independent. By its own convergence it may be off by "
-            "0.01 % (spot RMS), 0.5 % (wavefront RMS), 1e-5 µm (a Zernike coefficient), which every figure includes.");
+            "0.01 % (spot RMS), 0.5 % (wavefront RMS), 1e-5 µm (a Zernike coefficient), which every figure includes. A figure is the worst of the counts measured from there on, those between included, "
+            "and the largest rise of the error from one of them to the next: what was measured, no bound.");
   EXPECT_EQ(truth_note({}, {}), "");
   EXPECT_TRUE(advice({}, {}).empty());
 }
