@@ -142,7 +142,7 @@ std::string rounding_json(std::span<const RoundingReport> reports) {
 }
 
 std::string rounding_summary(std::span<const RoundingReport> reports) {
-  Table table{{{"system", "", true}, {"rays", ""}, {"end differently", ""}, {"digits lost", ""}, {"at", "", true}, {"place in the image", "worst mm"}, {"OPD", "worst waves"}, {"", "", true}}, {}};
+  Table table{{{"system", "", true}, {"rays", ""}, {"end differently", ""}, {"digits lost", ""}, {"at", "", true}, {"place in the image", "worst mm"}, {"OPD", "worst waves"}, {"verdict", "", true}}, {}};
   for (const RoundingReport& report : reports) {
     const auto& surfaces = report.rounding.surfaces;
     const auto worst_surface = std::max_element(surfaces.begin(), surfaces.end(), [](const auto& a, const auto& b) { return a.digits_lost < b.digits_lost; });
