@@ -288,7 +288,7 @@ void Subject::know_truth(const Variant& variant, int thread_count) {
 }
 
 void Subject::know_rough_cloud(const Variant& variant, int thread_count) {
-  if (!parts_->reason.empty() || variant.interpolation == Variant::as_prescribed || !(variant.noise.rms_um > 0) || !(point_count(variant) <= most_points)) return;
+  if (!parts_->reason.empty() || variant.interpolation == Variant::as_prescribed || !(variant.noise.rms_um > 0) || point_count(variant) > most_points) return;
   try {
     parts_->cloud(variant, thread_count);
   } catch (const std::bad_alloc&) {
@@ -311,7 +311,7 @@ Measured Subject::measure(const Variant& variant) {
   if (is_nearest && variant.interpolation != "linear") return {{}, "the nearest vertex is looked for on linear facets only"};
   if (is_to_tolerance && is_sampled) return {{}, "a tolerance is for surfaces as prescribed: between points nothing is iterated to one"};
   if (!(variant.rays >= 1)) return {{}, "there are no rays"};
-  if (const double points = point_count(variant); !(points <= most_points)) return {{}, fmt::format("{:.3g} points are more than {:g}", points, most_points)};
+  if (const double points = point_count(variant); points > most_points) return {{}, fmt::format("{:.3g} points are more than {:g}", points, most_points)};
   const Truth& truth = parts.truth_of(variant);
   if (!truth.rays.rays) return {{}, truth.rays.reason};
 
