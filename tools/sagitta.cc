@@ -26,7 +26,7 @@ namespace {
 
 using namespace sagitta::tools;
 
-constexpr const char* usage_status = R"(Exit status: 0 done; 1 the input is wrong, or not one ray arrived; 2 wrong usage.
+constexpr const char* usage_status = R"(Exit status: 0 done; 1 the input is wrong, not one ray arrived, a variant of `study` failed, or an answer that `verify` looked at is not good; 2 wrong usage.
 Results go to standard output or the output folder, messages to standard error.)";
 
 // As CLI::Range, but nan is out of it.
@@ -157,7 +157,7 @@ void add_study(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("study", "Measure error against run time: every variant of a study, as tables, plots and a page");
   auto* study = command->add_option("STUDY", options.study, "study (YAML), or the name of one of systems/studies/");
   command->add_option("--system", options.system, "in its place a prescription (YAML): how its spots and wavefronts settle with more rays, and with every interpolation of its points")->excludes(study);
-  command->add_option("-o,--output", options.folder, "folder for study.csv, study.json, study.md and the plots; finished rows there are kept")->required();
+  command->add_option("-o,--output", options.folder, "folder for study.csv, study.json, study.md and the plots; finished rows of the same study there are kept (not with --system)")->required();
   command->add_option("--threads", options.thread_count, "threads for the exact rays, for variants with threads: 0, and with --system (default: as many as the machine runs)")
       ->check(CLI::Range(1, 1024));
   command->callback([&status] {
