@@ -91,12 +91,4 @@ Crossing<T> meet_from(const T& start_path, const Vec3<T>& origin, bool forward, 
   return no_crossing<T>(Status::not_converged);
 }
 
-// From the base conic's hit on.
-template <class T, class Surface>
-Crossing<T> meet_departure(const Conic& base, const Surface& surface, const Vec3<T>& p, const Vec3<T>& d) {
-  const Crossing<T> start = base.meet(p, d);
-  if (start.status != Status::ok) return start;
-  return meet_from(start.path, start.point, start.along > T(0), surface, d);
-}
-
 }  // namespace sagitta::surface

@@ -183,18 +183,19 @@ struct TextbookZernike {
     } else {
       const TextbookHit<T> start = base.meet(p, d);
       if (start.status != Status::ok) return start;
+      using std::pow;
       const bool is_forward = dot(d, start.normal) > T(0);
       T t = start.path, share(0), step = T(1) / T(16);
-      const T shortest = step / T(1 << 20);
+      const T shortest = step / T(1 << 20), settled = pow(std::numeric_limits<T>::epsilon(), T(0.6)), near = pow(std::numeric_limits<T>::epsilon(), T(0.4));
       while (share < T(1)) {
         const T next = share + step < T(1) ? T(share + step) : T(1);
         T moved = t;
         // sound if the line still comes from the same side and the hit has not jumped: two steps of half the size agree
-        const bool is_settled = newton(p, d, next, T(1e-60), moved, normal) && (dot(d, normal) > T(0)) == is_forward;
+        const bool is_settled = newton(p, d, next, settled, moved, normal) && (dot(d, normal) > T(0)) == is_forward;
         T half = t;
         Vec3<T> half_normal;
-        const bool agrees = is_settled && newton(p, d, (share + next) / T(2), T(1e-60), half, half_normal) && newton(p, d, next, T(1e-60), half, half_normal) &&
-                            abs(half - moved) < T(1e-40);
+        const bool agrees = is_settled && newton(p, d, (share + next) / T(2), settled, half, half_normal) && newton(p, d, next, settled, half, half_normal) &&
+                            abs(half - moved) < near;
         if (agrees) {
           t = moved, share = next;
           continue;
@@ -202,7 +203,7 @@ struct TextbookZernike {
         step /= T(2);
         if (step < shortest) return {Status::not_converged};  // the hit ends at a fold
       }
-      newton(p, d, T(1), T(1e-60), t, normal);
+      newton(p, d, T(1), settled, t, normal);
       return hit_of<T>(t, p + t * d, normal);
     }
   }
