@@ -83,7 +83,8 @@ struct Zernike {
   numerics::Polynomial polynomial;
   double coefficient_sum = 0;  // sum |C_j norm_j|, the size of the terms inside r0
   const double* sizes = nullptr;  // the same by order, from 0 to `order`
-  double steepest_squared[2] = {0, 0};  // G^2 of (5) at s = 1 and 2
+  static constexpr double wider = 1.2;  // than r0: rays from there to here can still be told to pass no other crossing
+  double steepest_squared[2] = {0, 0};  // G^2 of (5) at s = 1 and `wider`
   int order = -1, given_order = -1;  // of the terms that are not zero, which alone are kept; of all that were given
 
   template <class Parameters, class Arena>
@@ -128,9 +129,9 @@ struct Zernike {
     result.groups = arena.keep(std::move(all_groups));
     result.rows = arena.keep(std::move(all_rows));
     result.sizes = arena.keep(std::move(sizes));
-    for (const int s : {1, 2}) {
-      const double steepest = result.bound_within<double>(s / result.per_radius, 1);
-      result.steepest_squared[s - 1] = steepest * steepest;
+    for (const bool is_wider : {false, true}) {
+      const double steepest = result.bound_within<double>((is_wider ? wider : 1) / result.per_radius, 1);
+      result.steepest_squared[is_wider] = steepest * steepest;
     }
     double terms = 0;
     for (const long double term : expanded) terms += static_cast<double>(std::abs(term));
@@ -334,7 +335,7 @@ struct Zernike {
     const T r_squared = origin.x * origin.x + origin.y * origin.y, end_r_squared = x * x + y * y;
     const T rho_squared = select<T>(r_squared > end_r_squared, r_squared, end_r_squared) * T(per_radius * per_radius);
     const T slopes = T(1 + 1e-9) * (d.x * d.x + d.y * d.y) * select<T>(rho_squared <= T(1), T(steepest_squared[0]), T(steepest_squared[1]));
-    return (rho_squared <= T(4)) & (along * end.base_along > T(0)) & (along * along > n_z * n_z * slopes) & (end.base_along * end.base_along > slopes);
+    return (rho_squared <= T(wider * wider)) & (along * end.base_along > T(0)) & (along * along > n_z * n_z * slopes) & (end.base_along * end.base_along > slopes);
   }
 };
 

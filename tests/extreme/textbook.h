@@ -8,8 +8,8 @@
 //   facets    Moeller and Trumbore's test, facet by facet, 0 <= u, v, u + v <= 1                                                   (3)
 //   Snell     cos^2 i' = 1 - mu^2 (1 - cos^2 i), unit normals, directions and light paths added up as they come                     (4)
 // (1) is that of optiland (geometries/standard.py), without the transfer; (2) returns like goptical's.
-// In 100 digits two choices differ: of the roots of (1) the contract's is taken, and (2) follows the base conic's hit while the departure
-// grows from 0 to its size, which is what "the hit continuous with the base conic's" means.
+// In other number types two choices differ: of the roots of (1) the contract's is taken, and (2) follows the base conic's hit while the
+// departure grows from 0 to its size, which is what "the hit continuous with the base conic's" means.
 #pragma once
 
 #include <cmath>
@@ -186,7 +186,7 @@ struct TextbookZernike {
       using std::pow;
       const bool is_forward = dot(d, start.normal) > T(0);
       T t = start.path, share(0), step = T(1) / T(16);
-      const T shortest = step / T(1 << 20), settled = pow(std::numeric_limits<T>::epsilon(), T(0.6)), near = pow(std::numeric_limits<T>::epsilon(), T(0.4));
+      const T shortest = step / T(1 << 20), settled = pow(std::numeric_limits<T>::epsilon(), T(0.8)), near = pow(std::numeric_limits<T>::epsilon(), T(0.4));
       while (share < T(1)) {
         const T next = share + step < T(1) ? T(share + step) : T(1);
         T moved = t;
@@ -204,6 +204,15 @@ struct TextbookZernike {
         if (step < shortest) return {Status::not_converged};  // the hit ends at a fold
       }
       newton(p, d, T(1), settled, t, normal);
+      // a fold that the steps have jumped over: lambda = (z - conic)/departure must rise from the base's hit to this one
+      constexpr int samples = 256;
+      T before(0);
+      for (int i = 1; i < samples && abs(t - start.path) > near; ++i) {
+        const Vec3<T> at = p + (start.path + (t - start.path) * T(i) / T(samples)) * d;
+        const T lambda = (at.z - base.sag(at.x * at.x + at.y * at.y)) / departure(at.x, at.y).z;
+        if (!(lambda > before)) return {Status::not_converged};
+        before = lambda;
+      }
       return hit_of<T>(t, p + t * d, normal);
     }
   }
