@@ -94,8 +94,9 @@ TEST(Folds, HitIsTheOneContinuousWithTheBaseConics) {
       ASSERT_EQ(ours.status, truth.status) << system << ' ' << i;
       ++counts[std::string(surface::status_names[static_cast<std::size_t>(ours.status)])];
       if (ours.status != Status::ok) continue;
-      // f ends at the rounding of its terms: up to 10 mm (some 2 mm of 7 terms), 8 eps of them, over the slope of f along the line; and 4 ulp of the path
-      ASSERT_NEAR(ours.path, static_cast<double>(truth.path), 7.2e-15 + 10 * 1.8e-15 / std::abs(ours.along)) << system << ' ' << i;
+      // f ends at the rounding of its terms, 8 eps of them, over its slope along the line; 8 ulp of the path
+      const double terms = zernike.height(ours.point.x, ours.point.y).magnitude, eps = std::numeric_limits<double>::epsilon();
+      ASSERT_NEAR(ours.path, static_cast<double>(truth.path), 8 * eps * (4 + std::abs(ours.path) + terms / std::abs(ours.along))) << system << ' ' << i;
     }
   }
   EXPECT_EQ(looks.size(), 40000u);
