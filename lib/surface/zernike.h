@@ -13,7 +13,7 @@
 //   d h_m/dX = m h_(m-1),   d h_m/dY = i m h_(m-1),   d P_k/du by the derivative of the recurrence.                   (3)
 // About 8 operations a term. Error of the sum: a few eps of sum |C_j|, times the order near the rim (tests: 1e-13 at
 // order 40). Sums up to order 12 become one polynomial in X and Y when they are made, 2 operations a term, unless its terms cancel
-// so that their rounding would show beside the heights themselves (a millimetre of order 12 on a plane would be off by 8e-13).
+// so that their rounding would show beside r0 and the heights themselves (a millimetre of order 12 on a disc of 1 mm would be off by 8e-13).
 //
 // Intersection. From the conic's hit on, Newton's method on the implicit form, in which no root appears: with p the sum,
 //   g(t) = w - c/2 (x^2 + y^2 + (1+K) w^2) = 0,   w = z - p(x, y)                                                 (4)
@@ -133,10 +133,14 @@ struct Zernike {
       const double steepest = result.bound_within<double>((is_wider ? wider : 1) / result.per_radius, 1);
       result.steepest_squared[is_wider] = steepest * steepest;
     }
-    double terms = 0;
-    for (const long double term : expanded) terms += static_cast<double>(std::abs(term));
+    double terms = 0;  // sum of the largest |c_ij X^i Y^j| of the disc
+    for (int i = 0; i <= order && result.is_polynomial; ++i)
+      for (int j = 0; i + j <= order; ++j) {
+        const auto largest = [&](int power) { return power == 0 ? 1.0 : std::pow(static_cast<double>(power) / (i + j), 0.5 * power); };
+        terms += std::abs(static_cast<double>(expanded[numerics::Polynomial::place(order, i, j)])) * largest(i) * largest(j);
+      }
     const double heights = std::abs(result.base.curvature) / (2 * result.per_radius * result.per_radius) + result.coefficient_sum;
-    result.is_polynomial = result.is_polynomial && terms <= most_cancellation * heights;
+    result.is_polynomial = result.is_polynomial && terms <= most_cancellation * (1 / result.per_radius + heights);
     if (result.is_polynomial) result.polynomial = {order, arena.keep(std::vector<double>(expanded.begin(), expanded.end()))};
     return result;
   }
@@ -289,7 +293,9 @@ struct Zernike {
 
   // The iteration on (4): where the next look is; where the last one was, g there, and the slopes of the surface.
   static constexpr int most_looks = 5;
-  static constexpr double most_cancellation = 64;  // of the polynomial's terms beside the heights, so that 2 N eps of them stay below 1e-12
+  // The size of a polynomial's terms beside r0 and the heights. Their rounding adds up to 2 N eps of them at worst, and in fact to eps/30
+  // (order 8 and 12): one ulp of the system's size, where the worst would cost two digits.
+  static constexpr double most_cancellation = 32;
   template <class T>
   struct Approach {
     static constexpr double going = 0, arrived = 1, given_up = 2;
