@@ -11,6 +11,7 @@
 //   tolerance   {quantity: ...}, or position_mm, direction for those of x, y, z, l, m, n without their own; what has none is not compared
 //   because     why that tolerance
 //   naive       fails | holds | none, and what it gives (holds, none: and why the case is here all the same)
+//   found       when, and what the tracer gave until then; where there was something to mend
 #pragma once
 
 #include <yaml-cpp/yaml.h>
