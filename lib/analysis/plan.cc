@@ -239,7 +239,7 @@ class LeftOut {
       const auto* zernike = std::get_if<surface::Zernike>(&at.surface->shape);
       if (!zernike || zernike->order == zernike->given_order) continue;
       std::string saves = "steps of the recurrence";
-      if (zernike->given_order <= numerics::highest_zernike_polynomial) {
+      if (zernike->is_polynomial && zernike->given_order <= numerics::highest_zernike_polynomial) {
         std::vector<double> coefficients;
         saves = at.is_reached ? text_of(saved_from(at, with_zero_terms(*zernike, coefficients))) : "";
       }

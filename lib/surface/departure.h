@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a line meets a surface z = S(x, y) that departs from a base conic: Newton's method, safeguarded.
+// Where a line meets a surface z = S(x, y) that departs little from one whose hit is known (flat facets, a smooth surface under
+// roughness), the base below: Newton's method, safeguarded. (Zernike surfaces may fold: first_crossing.h.)
 //
 //   f(t) = z(t) - S(x(t), y(t)),     f' = N - L dS/dx - M dS/dy = d . n,   n = (-dS/dx, -dS/dy, 1)                 (1)
 //
-// The iteration starts at the base conic's hit, and t counts from there, so f carries no digits of the distance
+// The iteration starts at the base's hit, and t counts from there, so f carries no digits of the distance
 // travelled. A step is halved until |f| falls (S may be undefined beyond the step: that counts as not falling). Once two
 // points with opposite signs of f are known they bracket the root, and a step that would leave the bracket is replaced
 // by bisection.
@@ -11,8 +12,8 @@
 // It ends when |f| is at the rounding of its own terms, eps (|z| + sum of the |terms| of S), or when a step moves (x, y) by
 // less than rounding, |step| (|L| + |M|) <= 4 eps (|x| + |y| + |z|): S and its gradient are the same there, so that step is
 // the last one and needs no further look. (A ray along z ends so at once.) A point is returned only if the line crosses
-// the surface in the same sense as it crosses the base conic (otherwise the iteration has slipped over a fold to another
-// hit); else the status is not_converged. A line that misses the base conic misses the surface.
+// the surface in the same sense as it crosses the base (otherwise the iteration has slipped over a fold to another
+// hit); else the status is not_converged. A line that misses the base misses the surface.
 //
 // Source: the safeguard is that of Dennis and Schnabel, Numerical Methods for Unconstrained Optimization (1983),
 // sections 2.5 and 6.3, for one variable.
@@ -89,14 +90,6 @@ Crossing<T> meet_from(const T& start_path, const Vec3<T>& origin, bool forward, 
     if (!moved) break;
   }
   return no_crossing<T>(Status::not_converged);
-}
-
-// From the base conic's hit on.
-template <class T, class Surface>
-Crossing<T> meet_departure(const Conic& base, const Surface& surface, const Vec3<T>& p, const Vec3<T>& d) {
-  const Crossing<T> start = base.meet(p, d);
-  if (start.status != Status::ok) return start;
-  return meet_from(start.path, start.point, start.along > T(0), surface, d);
 }
 
 }  // namespace sagitta::surface

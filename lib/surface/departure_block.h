@@ -4,6 +4,7 @@
 //
 // The surface has, besides meet(), whose bits these are,
 //   Conic base;   Sum<T> sum_of_polynomial(x, y);   Approach<T> look_at(origin, d, approach, sum, is_first);   most_looks
+//   passes_no_other(origin, d, approach)
 #pragma once
 
 #include "lib/numerics/instruction_set.h"
@@ -31,7 +32,7 @@ void look_at_lines(const Surface& surface, const BlockOfLines& lines, int i, Blo
   point.x.store(crossings.x + i), point.y.store(crossings.y + i), point.z.store(crossings.z + i);
   now.slope_x.store(crossings.slope_x + i), now.slope_y.store(crossings.slope_y + i);
   const T ok(static_cast<int>(Status::ok)), unsettled(static_cast<int>(Status::not_converged));
-  select<T>(now.state == arrived, ok, unsettled).store(crossings.status + i);
+  select<T>((now.state == arrived) & surface.passes_no_other(origin, d, now), ok, unsettled).store(crossings.status + i);
 }
 
 template <class Surface>

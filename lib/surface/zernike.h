@@ -12,13 +12,22 @@
 //   Z-sum = sum_m [ Re h_m  sum_k a_mk P_k + Im h_m  sum_k b_mk P_k ],   h_m = (X + iY)^m, X = x/r0, u = X^2 + Y^2     (2)
 //   d h_m/dX = m h_(m-1),   d h_m/dY = i m h_(m-1),   d P_k/du by the derivative of the recurrence.                   (3)
 // About 8 operations a term. Error of the sum: a few eps of sum |C_j|, times the order near the rim (tests: 1e-13 at
-// order 40). Sums up to order 12 become one polynomial in X and Y when they are made: 2 operations a term.
+// order 40). Sums up to order 12 become one polynomial in X and Y when they are made, 2 operations a term, unless its terms cancel
+// so that their rounding would show beside r0 and the heights themselves (a millimetre of order 12 on a disc of 1 mm would be off by 8e-13).
 //
 // Intersection. From the conic's hit on, Newton's method on the implicit form, in which no root appears: with p the sum,
 //   g(t) = w - c/2 (x^2 + y^2 + (1+K) w^2) = 0,   w = z - p(x, y)                                                 (4)
 //   g' = G (d_z - p_x d_x - p_y d_y) - c (x d_x + y d_y),   G = 1 - (1+K) c w > 0 on the sheet of the vertex.
 // It ends when |g| is at its rounding, or with a step that moves (x, y) by less than rounding, so that p stays what it is, if
-// what g'' adds is below rounding too. Where it does not end at once, the iteration of departure.h takes over.
+// what g'' adds is below rounding too. What it finds is the hit if no other crossing can be on the way: the slope of the conic along the
+// line lies between those at both ends, for its sag is convex or concave, and
+//   |grad p| <= G = sum |C_j N_j| n_j^2 T_n(s)/(s r0)   for rho <= s, s >= 1                                        (5)
+// (|Z_j/N_j| <= 1 in the unit disc, T_n(s) outside, T_n Chebyshev's polynomial, and a polynomial's gradient is below n^2 of that in the disc), so
+//   d_z - L dz/dx - M dz/dy keeps its sign if at both ends that of the conic alone is beyond sqrt(L^2 + M^2) G.        (6)
+// Where it does not end at once, or (6) does not hold, first_crossing.h goes the way in steps that pass no crossing, the second
+// derivatives bounded like (5): sum |C_j N_j| n_j^2 (n_j - 1)^2 T_n(s)/(s r0)^2.
+//
+// Source: Kellogg, Math. Z. 27, 55 (1928), for the gradient in (5).
 #pragma once
 
 #include <algorithm>
@@ -33,6 +42,7 @@
 #include "lib/numerics/zernike_basis.h"
 #include "lib/numerics/zernike_polynomial.h"
 #include "lib/surface/departure_block.h"
+#include "lib/surface/first_crossing.h"
 
 namespace sagitta::surface {
 
@@ -72,6 +82,9 @@ struct Zernike {
   bool is_polynomial = false;  // then the sum is this one, in X and Y
   numerics::Polynomial polynomial;
   double coefficient_sum = 0;  // sum |C_j norm_j|, the size of the terms inside r0
+  const double* sizes = nullptr;  // the same by order, from 0 to `order`
+  static constexpr double wider = 1.2;  // than r0: rays from there to here can still be told to pass no other crossing
+  double steepest_squared[2] = {0, 0};  // G^2 of (5) at s = 1 and `wider`
   int order = -1, given_order = -1;  // of the terms that are not zero, which alone are kept; of all that were given
 
   template <class Parameters, class Arena>
@@ -87,6 +100,7 @@ struct Zernike {
     const int order = result.order;
     result.is_polynomial = order <= numerics::highest_zernike_polynomial;
     std::vector<long double> expanded(result.is_polynomial ? numerics::Polynomial::count(order) : 0);
+    std::vector<double> sizes(static_cast<std::size_t>(order + 1));
     for (const auto& [index, micrometres] : given.list("coefficients_um")) {
       if (micrometres == 0) continue;
       const numerics::ZernikeTerm term = numerics::zernike_term(indexing, index);
@@ -101,6 +115,7 @@ struct Zernike {
       (term.m < 0 ? rows_of_m[k].sine : rows_of_m[k].cosine) += scaled;
       if (result.is_polynomial && scaled != 0) numerics::add_zernike_term<long double>(term, scaled, order, expanded);
       result.coefficient_sum += std::abs(scaled);
+      sizes[static_cast<std::size_t>(numerics::zernike_term(indexing, index).n)] += std::abs(scaled);
     }
     std::vector<Group> all_groups;
     std::vector<Row> all_rows;
@@ -113,6 +128,19 @@ struct Zernike {
     result.group_count = static_cast<int>(all_groups.size());
     result.groups = arena.keep(std::move(all_groups));
     result.rows = arena.keep(std::move(all_rows));
+    result.sizes = arena.keep(std::move(sizes));
+    for (const bool is_wider : {false, true}) {
+      const double steepest = result.bound_within<double>((is_wider ? wider : 1) / result.per_radius, 1);
+      result.steepest_squared[is_wider] = steepest * steepest;
+    }
+    double terms = 0;  // sum of the largest |c_ij X^i Y^j| of the disc
+    for (int i = 0; i <= order && result.is_polynomial; ++i)
+      for (int j = 0; i + j <= order; ++j) {
+        const auto largest = [&](int power) { return power == 0 ? 1.0 : std::pow(static_cast<double>(power) / (i + j), 0.5 * power); };
+        terms += std::abs(static_cast<double>(expanded[numerics::Polynomial::place(order, i, j)])) * largest(i) * largest(j);
+      }
+    const double heights = std::abs(result.base.curvature) / (2 * result.per_radius * result.per_radius) + result.coefficient_sum;
+    result.is_polynomial = result.is_polynomial && terms <= most_cancellation * (1 / result.per_radius + heights);
     if (result.is_polynomial) result.polynomial = {order, arena.keep(std::vector<double>(expanded.begin(), expanded.end()))};
     return result;
   }
@@ -208,7 +236,7 @@ struct Zernike {
     Approach<T> approach;
     for (int look = 0; look < most_looks && approach.state == T(Approach<T>::going); ++look)
       approach = look_at(start.point, d, approach, sum(start.point.x + approach.t * d.x, start.point.y + approach.t * d.y), look == 0);
-    if (approach.state != T(Approach<T>::arrived)) return meet_from(start.path, start.point, start.along > T(0), *this, d);
+    if (approach.state != T(Approach<T>::arrived) || !passes_no_other(start.point, d, approach)) return first_crossing(*this, start, d);
     const Vec3<T> normal{-approach.slope_x, -approach.slope_y, T(1)};
     return {start.path + approach.t, start.point + approach.t * d, normal, dot(normal, d), Status::ok};
   }
@@ -238,12 +266,41 @@ struct Zernike {
     return base.curvature + second * per_radius * per_radius;
   }
 
+  // (5), times r0 and the order for every derivative.
+  template <class T>
+  T bound_within(const T& radius, int derivatives) const {
+    const T s = radius * T(per_radius) > T(1) ? T(radius * T(per_radius)) : T(1);
+    T sum(0), chebyshev(1), before = s;  // T_n(s), T_(n-1)(s)
+    for (int n = 0; n <= order; ++n) {
+      const double power = derivatives == 1 ? 1.0 * n * n : 1.0 * n * n * (n - 1) * (n - 1);
+      sum += T(sizes[n] * power) * chebyshev;
+      const T next = T(2) * s * chebyshev - before;
+      before = chebyshev, chebyshev = next;
+    }
+    const T per = T(per_radius) / s;
+    return derivatives == 1 ? T(sum * per) : T(sum * per * per);
+  }
+  // For first_crossing.h. Outside r0 the bound grows as T_n does: a step to 1 + n^(-3/2) of the radius keeps that below 10 for n up to 20.
+  template <class T>
+  T bend_within(const T& radius) const {
+    return bound_within(radius, 2);
+  }
+  template <class T>
+  T reach_from(const T& r) const {
+    const T r0 = T(1) / T(per_radius), further = T(1) + T(1 / (order * std::sqrt(static_cast<double>(order))));
+    return r * further < r0 ? r0 : T(r * further);
+  }
+
   // The iteration on (4): where the next look is; where the last one was, g there, and the slopes of the surface.
   static constexpr int most_looks = 5;
+  // The size of a polynomial's terms beside r0 and the heights. Their rounding adds up to 2 N eps of them at worst, and in fact to eps/30
+  // (order 8 and 12): one ulp of the system's size, where the worst would cost two digits.
+  static constexpr double most_cancellation = 32;
   template <class T>
   struct Approach {
     static constexpr double going = 0, arrived = 1, given_up = 2;
     T t{}, old_t{}, g{}, slope_x{}, slope_y{}, state{};
+    T base_along{};  // d_z - L dz/dx - M dz/dy of the conic alone, there
   };
   // In select form, for T in lanes; what no longer goes on stays as it is.
   template <class T>
@@ -273,7 +330,18 @@ struct Zernike {
     const T arrived(Approach<T>::arrived), given_up(Approach<T>::given_up), going(Approach<T>::going);
     const T after = select<T>(sound & ends, arrived, select<T>(sound & in_bracket, going, given_up));
     return {select<T>(goes & !at_rounding, next, t), t, g, select<T>(goes, c * x * per_G + p.along_x, before.slope_x),
-            select<T>(goes, c * y * per_G + p.along_y, before.slope_y), select<T>(goes, after, before.state)};
+            select<T>(goes, c * y * per_G + p.along_y, before.slope_y), select<T>(goes, after, before.state),
+            select<T>(goes, d.z - c * (x * d.x + y * d.y) * per_G, before.base_along)};
+  }
+  // (6), with room for its own rounding.
+  template <class T>
+  auto passes_no_other(const Vec3<T>& origin, const Vec3<T>& d, const Approach<T>& end) const {
+    const T c(base.curvature), n_z = T(1) - (T(1) + T(base.conic_constant)) * c * origin.z;
+    const T along = n_z * d.z - c * (origin.x * d.x + origin.y * d.y), x = origin.x + end.t * d.x, y = origin.y + end.t * d.y;
+    const T r_squared = origin.x * origin.x + origin.y * origin.y, end_r_squared = x * x + y * y;
+    const T rho_squared = select<T>(r_squared > end_r_squared, r_squared, end_r_squared) * T(per_radius * per_radius);
+    const T slopes = T(1 + 1e-9) * (d.x * d.x + d.y * d.y) * select<T>(rho_squared <= T(1), T(steepest_squared[0]), T(steepest_squared[1]));
+    return (rho_squared <= T(wider * wider)) & (along * end.base_along > T(0)) & (along * along > n_z * n_z * slopes) & (end.base_along * end.base_along > slopes);
   }
 };
 
