@@ -42,7 +42,7 @@ class Constant : public Dispersion {
 double Medium::index(double wavelength_um) const {
   if (!covers(wavelength_um)) return std::numeric_limits<double>::quiet_NaN();
   const double index = dispersion->index(wavelength_um);
-  return index > 0 && index < infinity ? index : std::numeric_limits<double>::quiet_NaN();
+  return index >= least_index && index <= largest_index ? index : std::numeric_limits<double>::quiet_NaN();
 }
 
 std::optional<double> wavelength_without_index(const Medium& medium) {

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "lib/medium/medium.h"
 #include "lib/numerics/key.h"
 
 namespace sagitta::prescription {
@@ -106,8 +107,8 @@ inline constexpr std::array surface_keys{
 
 // Either index, or nd with vd.
 inline constexpr std::array medium_keys{
-    numerics::Key{.name = "index", .meaning = "refractive index at every wavelength", .range = numerics::positive},
-    numerics::Key{.name = "nd", .meaning = "refractive index at 587.5618 nm", .range = numerics::positive},
+    numerics::Key{.name = "index", .meaning = "refractive index at every wavelength", .range = {medium::least_index, medium::largest_index}},
+    numerics::Key{.name = "nd", .meaning = "refractive index at 587.5618 nm", .range = {medium::least_index, medium::largest_index}},
     numerics::Key{.name = "vd", .meaning = "Abbe number", .range = numerics::positive}};
 
 // The shapes of lib/surface/shapes.h.

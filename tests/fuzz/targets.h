@@ -165,6 +165,26 @@ inline std::string wrong_with_rays(const scene::CompileResult& whole, const scen
   return {};
 }
 
+// The main job in small: whatever arrives, and however few, its figures are numbers, or are left out.
+inline std::string wrong_with_job(const scene::Scene& scene) {
+  analysis::JobRequest request;
+  request.ray_count = 19, request.spot_image_size = 8, request.thread_count = 1;
+  request.wavefront.size = 8, request.wavefront.zernike_terms = 6;
+  for (const analysis::JobResult& result : analysis::run_job(scene, request)) {
+    if (result.rays.total() != 19) return fmt::format("a job of 19 rays counts {}", result.rays.total());
+    const bool any_arrived = result.rays[trace::Status::ok] > 0;
+    if (any_arrived && !(std::isfinite(result.spot->rms_radius) && std::isfinite(result.spot->geometric_radius) && std::isfinite(result.spot->centroid_x)))
+      return "a spot without a size";
+    const auto& wavefront = result.wavefront->wavefront;
+    if (!wavefront && result.wavefront->reason.empty()) return "no wavefront, without a reason";
+    if (wavefront && !(std::isfinite(wavefront->rms_waves) && std::isfinite(wavefront->peak_to_valley_waves))) return "a wavefront without an rms";
+    if (wavefront && wavefront->zernike)
+      for (const double coefficient : wavefront->zernike->coefficients)
+        if (!std::isfinite(coefficient)) return "a Zernike coefficient that is no number";
+  }
+  return {};
+}
+
 // The prescription and, behind a line "%%", its cloud points.xyz. The compilation of large clouds and of many terms takes its time, which is no
 // finding here.
 inline std::string fuzz_compile(const Folder& folder, std::string_view bytes) {
@@ -178,6 +198,8 @@ inline std::string fuzz_compile(const Folder& folder, std::string_view bytes) {
   const scene::CompileResult whole = scene::compile(*read.model);
   if (const std::string wrong = wrong_with(whole.findings, whole.scene.has_value()); !wrong.empty() || !whole.scene) return wrong;
   const bool has_clouds = std::any_of(read.model->surfaces.begin(), read.model->surfaces.end(), [](const auto& one) { return one.shape.cloud != nullptr; });
+  if (whole.scene->fields.size() * whole.scene->wavelengths.size() <= 4)
+    if (const std::string wrong = wrong_with_job(*whole.scene); !wrong.empty()) return wrong;
   if (!has_clouds) return wrong_with_rays(whole, nullptr);
   const scene::CompileResult part = scene::compile(*read.model, analysis::beam_of_job());
   if (!part.scene) return "what compiles whole does not compile in part";
