@@ -18,6 +18,9 @@ using KeyTable = std::span<const numerics::Key>;
 
 inline constexpr int prescription_version = 1;
 
+// Those of medium.h, in nm.
+inline constexpr numerics::Range wavelengths_nm_range{1e-6, 1e12};
+
 inline constexpr std::array system_keys{
     numerics::Key{.name = "sagitta",
                   .meaning = "version of the format, 1",
@@ -32,10 +35,10 @@ inline constexpr std::array system_keys{
                   .kind = numerics::ValueKind::list,
                   .meaning = "the wavelengths, in a list",
                   .required = true,
-                  .range = numerics::positive},
+                  .range = wavelengths_nm_range},
     numerics::Key{.name = "primary_nm",
                   .meaning = "wavelength of the first order; the first of wavelengths_nm unless given",
-                  .range = numerics::positive},
+                  .range = wavelengths_nm_range},
     numerics::Key{.name = "aperture",
                   .kind = numerics::ValueKind::mapping,
                   .meaning = "size of the launched beam",
