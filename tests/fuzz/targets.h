@@ -44,7 +44,7 @@ inline void put_named_files(const Folder& folder) {
   folder.write("points.ply", "ply\nformat ascii 1.0\nelement vertex 25\nproperty double x\nproperty double y\nproperty double z\nend_header\n" + xyz);
   folder.write("glass.yml", "DATA:\n  - {type: formula 2, wavelength_range: 0.3 2.5, coefficients: 0 1.04 0.006 0.23 0.02 1.01 103.6}\n");
   folder.write("base.yaml", "sagitta: 1\nwavelengths_nm: [550]\naperture: {entrance_pupil_diameter_mm: 2}\nsurfaces:\n"
-                            "  - {name: front, conic: {radius_mm: 8}, thickness_mm: 3, medium: {index: 1.5}}\n  - {name: image}\n");
+                            "  - {name: front, stop: true, conic: {radius_mm: 8}, thickness_mm: 3, medium: {index: 1.5}}\n  - {name: image}\n");
 }
 
 // Messages of a reader: bounded, in plain text, and there where nothing was read.
