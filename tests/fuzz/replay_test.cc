@@ -34,7 +34,7 @@ TEST_P(EveryTarget, StandsWhatFuzzingKept) {
   EXPECT_GT(replay(GetParam(), here / "corpus" / GetParam().name), 20);
 }
 
-INSTANTIATE_TEST_SUITE_P(Fuzz, EveryTarget, testing::ValuesIn(targets), [](const auto& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(Fuzz, EveryTarget, testing::ValuesIn(targets), [](const auto& one) { return std::string(one.param.name); });
 
 }  // namespace
 }  // namespace sagitta::fuzz
