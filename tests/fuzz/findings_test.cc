@@ -52,6 +52,18 @@ TEST(Finding, AWavelengthThatIsNoneIsRefused) {
   EXPECT_TRUE(medium::air().covers(1e-6 / 1000));
 }
 
+// 2026-11-22, compile: rays from an object 1e-300 mm before the pupil started with directions that were no numbers.
+TEST(Finding, ANumberWhoseSquareIsZeroIsRefused) {
+  const Folder folder;
+  const auto near = [](const std::string& distance) {
+    return "sagitta: 1\nwavelengths_nm: [550]\nobject: {distance_mm: " + distance + "}\naperture: {stop_diameter_mm: 1e-50}\nsurfaces:\n"
+           "  - {stop: true, thickness_mm: 0, medium: {index: 1.5}}\n  - {}\n";
+  };
+  EXPECT_THAT(prescription::test::text_of(prescription::test::read_text(near("1e-300")).findings), testing::HasSubstr("distance_mm must be at least 1e-100 in size, not '1e-300'"));
+  EXPECT_TRUE(prescription::test::read_text(near("1e-99")).model);
+  EXPECT_EQ(fuzz_compile(folder, near("1e-99")), "");
+}
+
 std::string numbers_to(int last) {
   std::string list = "1";
   for (int i = 2; i <= last; ++i) list += fmt::format(", {}", i);

@@ -196,7 +196,7 @@ inline std::string fuzz_compile(const Folder& folder, std::string_view bytes) {
   for (const auto& surface : read.model->surfaces)
     if (surface.shape.cloud && surface.shape.cloud->points.size() > 500) return {};
   const scene::CompileResult whole = scene::compile(*read.model);
-  if (const std::string wrong = wrong_with(whole.findings, whole.scene.has_value()); !wrong.empty() || !whole.scene) return wrong;
+  if (const std::string wrong = wrong_with(in_order(whole.findings, read.model->documents), whole.scene.has_value()); !wrong.empty() || !whole.scene) return wrong;
   const bool has_clouds = std::any_of(read.model->surfaces.begin(), read.model->surfaces.end(), [](const auto& one) { return one.shape.cloud != nullptr; });
   if (whole.scene->fields.size() * whole.scene->wavelengths.size() <= 4)
     if (const std::string wrong = wrong_with_job(*whole.scene); !wrong.empty()) return wrong;
