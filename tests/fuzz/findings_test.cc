@@ -64,6 +64,20 @@ TEST(Finding, ANumberWhoseSquareIsZeroIsRefused) {
   EXPECT_EQ(fuzz_compile(folder, near("1e-99")), "");
 }
 
+// 2026-11-22, compile: on a conic of K = 1e50 refracted directions had the length 0.7, with the status ok; 1e20 did it too.
+TEST(Finding, AConicConstantThatLeavesNoNormalIsRefused) {
+  const Folder folder;
+  const auto with = [](const std::string& K) {
+    return "sagitta: 1\nwavelengths_nm: [550]\naperture: {entrance_pupil_diameter_mm: 1e-4}\nsurfaces:\n"
+           "  - {stop: true, conic: {radius_mm: 8, conic_constant: " + K + "}, thickness_mm: 5, medium: {index: 1.5}, tilt_deg: [10, 0, 0]}\n  - {}\n";
+  };
+  for (const std::string K : {"1e50", "-1e50", "1.1e9"}) EXPECT_TRUE(prescription::test::read_text(with(K)).findings.has_errors()) << K;
+  for (const std::string K : {"1e9", "-1e9"}) {
+    EXPECT_TRUE(prescription::test::read_text(with(K)).model) << K;
+    EXPECT_EQ(fuzz_compile(folder, with(K)), "") << K;
+  }
+}
+
 std::string numbers_to(int last) {
   std::string list = "1";
   for (int i = 2; i <= last; ++i) list += fmt::format(", {}", i);
