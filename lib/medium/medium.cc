@@ -10,8 +10,6 @@
 namespace sagitta::medium {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 // n = nd + B (1/L^2 - 1/Ld^2): the constant at the d line is the index itself, so nd comes back to the last bit.
 class TwoTermCauchy : public Dispersion {
  public:
@@ -42,7 +40,7 @@ class Constant : public Dispersion {
 double Medium::index(double wavelength_um) const {
   if (!covers(wavelength_um)) return std::numeric_limits<double>::quiet_NaN();
   const double index = dispersion->index(wavelength_um);
-  return index > 0 && index < infinity ? index : std::numeric_limits<double>::quiet_NaN();
+  return index >= least_index && index <= largest_index ? index : std::numeric_limits<double>::quiet_NaN();
 }
 
 std::optional<double> wavelength_without_index(const Medium& medium) {
@@ -56,7 +54,7 @@ std::optional<double> wavelength_without_index(const Medium& medium) {
 }
 
 Medium constant(std::string name, double index) {
-  return {std::move(name), std::make_shared<Constant>(index), 0, infinity};
+  return {std::move(name), std::make_shared<Constant>(index), least_wavelength_um, largest_wavelength_um};
 }
 
 Medium air() { return constant("air", 1); }
@@ -64,7 +62,7 @@ Medium air() { return constant("air", 1); }
 Medium from_nd_vd(double nd, double vd) {
   constexpr double line_f_um = 0.4861327, line_c_um = 0.6562725;
   const double slope_um2 = (nd - 1) / vd / (1 / (line_f_um * line_f_um) - 1 / (line_c_um * line_c_um));
-  return {fmt::format("nd {} vd {}", nd, vd), std::make_shared<TwoTermCauchy>(nd, slope_um2), 0, infinity};
+  return {fmt::format("nd {} vd {}", nd, vd), std::make_shared<TwoTermCauchy>(nd, slope_um2), least_wavelength_um, largest_wavelength_um};
 }
 
 }  // namespace sagitta::medium

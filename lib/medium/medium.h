@@ -18,6 +18,11 @@ class Dispersion {
   virtual bool is_constant() const { return false; }
 };
 
+// What may be an index: wider than any medium is, and narrow enough that a direction keeps its digits from one medium to the next.
+inline constexpr double least_index = 1e-3, largest_index = 1e3;
+// Wavelengths at which a medium without a range of its own may be used: an optical path is a number of them that can be squared.
+inline constexpr double least_wavelength_um = 1e-9, largest_wavelength_um = 1e9;
+
 struct Medium {
   std::string name;
   std::shared_ptr<const Dispersion> dispersion;
@@ -29,7 +34,7 @@ struct Medium {
     return wavelength_um >= shortest_um * (1 - 1e-12) && wavelength_um <= longest_um * (1 + 1e-12);
   }
 
-  // NaN outside the range, and where the dispersion gives no positive, finite value (n^2 <= 0, a pole). A caller that
+  // NaN outside the range, and where the dispersion gives no index (n^2 <= 0, a pole). A caller that
   // wants to trace must look at it once.
   double index(double wavelength_um) const;
 };

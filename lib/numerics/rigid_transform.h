@@ -21,7 +21,7 @@ struct Rotation {
   constexpr Rotation transposed() const {
     return {{row_x.x, row_y.x, row_z.x}, {row_x.y, row_y.y, row_z.y}, {row_x.z, row_y.z, row_z.z}};
   }
-  friend constexpr bool operator==(const Rotation&, const Rotation&) = default;
+  friend bool operator==(const Rotation&, const Rotation&) = default;
 };
 
 // Right-handed rotation about x, then the new y, then the new z (angles in radians): R = Rx Ry Rz. A positive angle
@@ -53,7 +53,7 @@ struct RigidTransform {
     const Rotation<T> back = rotation.transposed();
     return {back, -(back * translation)};
   }
-  friend constexpr bool operator==(const RigidTransform&, const RigidTransform&) = default;
+  friend bool operator==(const RigidTransform&, const RigidTransform&) = default;
 };
 
 }  // namespace sagitta::numerics

@@ -40,7 +40,7 @@ void check_medium(const MediumUse& use, const std::vector<double>& wavelengths_n
                                           use.medium.shortest_um * 1000, use.medium.longest_um * 1000, shown(outside)));
   if (!without_index.empty())
     findings.error(use.place,
-                   fmt::format("the index of {} is not positive at {}", use.medium.name, shown(without_index)));
+                   fmt::format("{} has no index from {} to {} at {}", use.medium.name, medium::least_index, medium::largest_index, shown(without_index)));
 }
 
 void check_aperture(const Model& model, Findings& findings) {

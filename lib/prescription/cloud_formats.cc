@@ -15,13 +15,14 @@
 namespace sagitta::prescription {
 namespace {
 
-constexpr std::size_t buffer_bytes = std::size_t{1} << 20;
+// Grows with the lines, so that a small file takes little memory.
+constexpr std::size_t first_buffer_bytes = std::size_t{1} << 16, most_buffer_bytes = std::size_t{1} << 20;
 
 std::string reason_of(int error) { return "cannot be read: " + std::generic_category().message(error); }
 
 }  // namespace
 
-LineReader::LineReader(const std::string& file) : file_(std::fopen(file.c_str(), "rb")), buffer_(buffer_bytes) {
+LineReader::LineReader(const std::string& file) : file_(std::fopen(file.c_str(), "rb")), buffer_(first_buffer_bytes) {
   if (!file_) fault_ = reason_of(errno);
 }
 
@@ -32,8 +33,11 @@ bool LineReader::fill() {
   before_ += begin_;
   begin_ = 0;
   if (end_ == buffer_.size()) {
-    fault_ = "a line of more than a megabyte: this is no text of points";
-    return false;
+    if (end_ == most_buffer_bytes) {
+      fault_ = "a line of more than a megabyte: this is no text of points";
+      return false;
+    }
+    buffer_.resize(2 * end_);
   }
   const std::size_t wanted = buffer_.size() - end_;
   const std::size_t got = std::fread(buffer_.data() + end_, 1, wanted, file_.get());

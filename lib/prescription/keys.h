@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "lib/medium/medium.h"
 #include "lib/numerics/key.h"
 
 namespace sagitta::prescription {
@@ -16,6 +17,9 @@ namespace sagitta::prescription {
 using KeyTable = std::span<const numerics::Key>;
 
 inline constexpr int prescription_version = 1;
+
+// Those of medium.h, in nm.
+inline constexpr numerics::Range wavelengths_nm_range{1e-6, 1e12};
 
 inline constexpr std::array system_keys{
     numerics::Key{.name = "sagitta",
@@ -31,10 +35,10 @@ inline constexpr std::array system_keys{
                   .kind = numerics::ValueKind::list,
                   .meaning = "the wavelengths, in a list",
                   .required = true,
-                  .range = numerics::positive},
+                  .range = wavelengths_nm_range},
     numerics::Key{.name = "primary_nm",
                   .meaning = "wavelength of the first order; the first of wavelengths_nm unless given",
-                  .range = numerics::positive},
+                  .range = wavelengths_nm_range},
     numerics::Key{.name = "aperture",
                   .kind = numerics::ValueKind::mapping,
                   .meaning = "size of the launched beam",
@@ -106,8 +110,8 @@ inline constexpr std::array surface_keys{
 
 // Either index, or nd with vd.
 inline constexpr std::array medium_keys{
-    numerics::Key{.name = "index", .meaning = "refractive index at every wavelength", .range = numerics::positive},
-    numerics::Key{.name = "nd", .meaning = "refractive index at 587.5618 nm", .range = numerics::positive},
+    numerics::Key{.name = "index", .meaning = "refractive index at every wavelength", .range = {medium::least_index, medium::largest_index}},
+    numerics::Key{.name = "nd", .meaning = "refractive index at 587.5618 nm", .range = {medium::least_index, medium::largest_index}},
     numerics::Key{.name = "vd", .meaning = "Abbe number", .range = numerics::positive}};
 
 // The shapes of lib/surface/shapes.h.

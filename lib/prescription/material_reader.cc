@@ -130,7 +130,8 @@ class MaterialFile {
     medium_ = medium::from_formula(name_, *formula, *coefficients, (*range)[0], (*range)[1]);
     if (const std::optional<double> bad_um = medium::wavelength_without_index(*medium_))
       findings_.error(coefficients_text->place,
-                      fmt::format("formula {} ({}) gives no positive, finite index at {:.6g} um, inside its range", number, formula->name, *bad_um),
+                      fmt::format("formula {} ({}) gives no index from {} to {} at {:.6g} um, inside its range", number, formula->name, medium::least_index,
+                                  medium::largest_index, *bad_um),
                       "check the coefficients, the number of the formula (1 squares C3, C5, ...; 2 does not) and the range");
   }
 
@@ -202,8 +203,8 @@ class MaterialFile {
       if (columns.size() != column_count || values.size() != column_count)
         findings_.error(place, fmt::format("'{}' is not a row of {} finite numbers", excerpt(text), column_count),
                         fmt::format("{}; each row on a line of its own below `data: |`", column_count == 3 ? "um, n, k" : "um, n"));
-      else if (!(values[0] > 0 && values[1] > 0))
-        findings_.error(place, fmt::format("'{}': the wavelength and n must be positive", excerpt(text)));
+      else if (!(values[0] > 0 && values[1] >= medium::least_index && values[1] <= medium::largest_index))
+        findings_.error(place, fmt::format("'{}': the wavelength must be positive, and n from {} to {}", excerpt(text), medium::least_index, medium::largest_index));
       else
         rows.push_back({{values[0], values[1]}, line});
     }

@@ -41,7 +41,7 @@ std::vector<double> read_wavelengths(const YamlNode& node, Findings& findings) {
   std::vector<double> wavelengths;
   std::set<double> seen;
   read_list(node, "wavelengths_nm", "at least one wavelength", findings, [&](const YamlNode& item) {
-    const auto wavelength = read_number(item, "each of wavelengths_nm", numerics::positive, findings);
+    const auto wavelength = read_number(item, "each of wavelengths_nm", wavelengths_nm_range, findings);
     if (!wavelength) return;
     if (seen.insert(*wavelength).second)
       wavelengths.push_back(*wavelength);

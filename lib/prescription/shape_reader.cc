@@ -66,7 +66,7 @@ void read_value(const Section& section, const Key& key, Parameters& parameters) 
 }
 
 // The points of the file that `key` names; null, with errors, where there are none.
-std::shared_ptr<const PointCloud> read_points(const std::string& key, const Parameters& parameters, Findings& findings) {
+std::shared_ptr<const PointCloud> read_points(const std::string& key, const Parameters& parameters, KnownClouds& clouds, Findings& findings) {
   const auto name = parameters.texts.find(key);
   const auto format = parameters.texts.find("format"), axes = parameters.texts.find("axes");
   if (name == parameters.texts.end() || format == parameters.texts.end() || axes == parameters.texts.end())
@@ -81,21 +81,28 @@ std::shared_ptr<const PointCloud> read_points(const std::string& key, const Para
   }
   const auto file = find_named_file(name->second, place, findings);
   if (!file) return nullptr;
-  const std::size_t finding_count = findings.all().size();
-  auto cloud = read_cloud({*file, format->second, osa_axes}, findings);
-  if (findings.all().size() > finding_count) findings.note(place, "named here");
+  const auto [known, is_new] = clouds.try_emplace({*file, format->second, osa_axes}, KnownCloud{nullptr, place});
+  auto& [cloud, named_at] = known->second;
+  if (is_new) {
+    const std::size_t finding_count = findings.all().size();
+    cloud = read_cloud({*file, format->second, osa_axes}, findings);
+    if (findings.all().size() > finding_count) findings.note(place, "named here");
+  } else if (!cloud) {
+    const bool is_here = named_at.file == place.file;
+    findings.error(place, fmt::format("'{}' cannot be read", excerpt(name->second)), fmt::format("see {}line {}", is_here ? "" : named_at.file + ", ", named_at.line));
+  }
   return cloud;
 }
 
 }  // namespace
 
-Shape read_shape(const ShapeKind& kind, const YamlNode& node, Findings& findings) {
+Shape read_shape(const ShapeKind& kind, const YamlNode& node, KnownClouds& clouds, Findings& findings) {
   const Section section(node, std::string(kind.name), kind.keys, findings);
   Shape shape{.kind = std::string(kind.name), .parameters = {}, .cloud = nullptr, .place = node.place};
   for (const Key& key : kind.keys) read_value(section, key, shape.parameters);
   for (const Key& key : kind.keys)
     if (key.kind == ValueKind::file)
-      shape.cloud = read_points(std::string(key.name), shape.parameters, findings);
+      shape.cloud = read_points(std::string(key.name), shape.parameters, clouds, findings);
   return shape;
 }
 
@@ -112,7 +119,8 @@ Shape make_shape(std::string_view kind, const std::vector<std::pair<std::string,
     node.entries.push_back({key, place, std::move(value)});
   }
   const auto found = std::find_if(shape_kinds().begin(), shape_kinds().end(), [&](const ShapeKind& one) { return one.name == kind; });
-  return read_shape(*found, node, findings);
+  KnownClouds clouds;
+  return read_shape(*found, node, clouds, findings);
 }
 
 }  // namespace sagitta::prescription

@@ -2,8 +2,11 @@
 // One shape of a prescription, whatever its kind: its values are read after the shape's own table of keys.
 #pragma once
 
+#include <map>
+#include <memory>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -14,8 +17,15 @@
 
 namespace sagitta::prescription {
 
+// Clouds by file, format and axes: a file is read once, however many surfaces name it, and faults in it are told once.
+struct KnownCloud {
+  std::shared_ptr<const PointCloud> cloud;  // null: it could not be read
+  Place named_at;                           // for the first time
+};
+using KnownClouds = std::map<std::tuple<std::string, std::string, bool>, KnownCloud>;
+
 // A file that the shape names is looked for first beside the file in which the name stands.
-Shape read_shape(const ShapeKind& kind, const YamlNode& node, Findings& findings);
+Shape read_shape(const ShapeKind& kind, const YamlNode& node, KnownClouds& clouds, Findings& findings);
 
 // A shape that is asked for outside a prescription, by keys and texts: as if it stood at `place` in one.
 Shape make_shape(std::string_view kind, const std::vector<std::pair<std::string, std::string>>& values, const Place& place,

@@ -63,6 +63,7 @@ std::vector<Parameters> read_values(const YamlNode& node, const Key& key, Lists 
       }
       auto values = read_values(*item, key, lists, findings);
       std::move(values.begin(), values.end(), std::back_inserter(all));
+      if (all.size() > most_variants) break;  // which is told where they are multiplied
     }
     return all;
   }
@@ -184,7 +185,7 @@ std::vector<Parameters> read_variants(const YamlNode& node, const StudyFile& stu
     refuse(node, "variants", "a list of at least one block of settings", findings);
     return variants;
   }
-  for (std::size_t i = 0; i < node.items.size(); ++i) {
+  for (std::size_t i = 0; i < node.items.size() && variants.size() <= most_variants; ++i) {
     const YamlNode& block = *node.items[i];
     const int errors_before = findings.error_count();
     for (const Parameters& given : read_settings(block, fmt::format("block {} of variants", i + 1), variant_keys, Lists::multiplied, findings)) {
@@ -196,7 +197,7 @@ std::vector<Parameters> read_variants(const YamlNode& node, const StudyFile& stu
         findings.error(block.place, fmt::format("variants {} and {} are the same", first->second, variants.size()), "each is to stand once, over all blocks");
     }
   }
-  if (variants.size() > most_variants) findings.error(node.place, fmt::format("{} variants are more than {}", variants.size(), most_variants), "make several studies");
+  if (variants.size() > most_variants) findings.error(node.place, fmt::format("more than {} variants", most_variants), "make several studies");
   return variants;
 }
 
@@ -204,6 +205,10 @@ std::vector<PublishedFigure> read_paper(const YamlNode& node, const std::vector<
   std::vector<PublishedFigure> paper;
   if (node.kind != Kind::sequence || node.items.empty()) {
     refuse(node, "paper", "a list of printed figures", findings);
+    return paper;
+  }
+  if (node.items.size() > most_figures) {
+    findings.error(node.place, fmt::format("{} printed figures are more than {}", node.items.size(), most_figures), "make several studies");
     return paper;
   }
   for (std::size_t i = 0; i < node.items.size(); ++i) {

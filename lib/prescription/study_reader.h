@@ -17,8 +17,8 @@ struct StudyReadResult {
   Findings findings;
 };
 
-// At most so many variants in one file.
-inline constexpr std::size_t most_variants = 10'000;
+// At most so many variants and printed figures in one file.
+inline constexpr std::size_t most_variants = 10'000, most_figures = 200;
 
 StudyReadResult read_study(const std::string& file);
 

@@ -103,6 +103,11 @@ std::optional<double> read_number(const YamlNode& node, const std::string& label
                    "products of larger numbers are infinite, and rays could not be traced");
     return std::nullopt;
   }
+  if (parsed.ok && parsed.value != 0 && std::abs(parsed.value) < smallest_number && range.contains(parsed.value)) {
+    findings.error(node.place, fmt::format("{} must be at least {:g} in size, not {}", label, smallest_number, shown(node)),
+                   range.contains(0) ? "or 0" : "the square of a smaller number is 0, and rays could not be traced");
+    return std::nullopt;
+  }
   if (parsed.ok && range.contains(parsed.value)) return parsed.value;
   findings.error(node.place, fmt::format("{} must be {}, not {}", label, in_words(range), shown(node)),
                  !parsed.ok                                    ? number_hint(node)

@@ -48,5 +48,7 @@ ParsedNumber parse_number(std::string_view text);
 
 // What rays start from or meet is at most so large: rays multiply it, and products of three such numbers are numbers still.
 inline constexpr double largest_number = 1e100;
+// And, unless it is 0, at least so large: the square of its length, by which a direction is divided, is not 0.
+inline constexpr double smallest_number = 1e-100;
 
 }  // namespace sagitta::prescription

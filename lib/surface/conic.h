@@ -59,12 +59,15 @@ Crossing<T> crossing_of_conic(const Vec3<T>& start, const Vec3<T>& p, const Vec3
           StatusIn<T>::either(hit, Status::ok, Status::missed)};
 }
 
+// Of K: beyond 1e15 or so, K times the rounding of z leaves nothing of the normal.
+inline constexpr numerics::Range conic_constants{-1e9, 1e9};
+
 struct Conic {
   static constexpr std::string_view kind = "conic";
   static constexpr std::array keys{
       numerics::Key{"radius_mm", numerics::ValueKind::number, "vertex radius of curvature, + when the centre is at +z",
                     true, numerics::nonzero_or_infinite},
-      numerics::Key{"conic_constant", numerics::ValueKind::number, "K: 0 sphere, -1 paraboloid"}};
+      numerics::Key{"conic_constant", numerics::ValueKind::number, "K: 0 sphere, -1 paraboloid", false, conic_constants}};
 
   double curvature = 0;       // c, 1/mm
   double conic_constant = 0;  // K

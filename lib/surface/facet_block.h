@@ -91,7 +91,7 @@ struct LineList {
   const auto or_any = [](std::uint32_t facet) { return facet == no_facet ? 0 : facet; };  // what it says is forgotten
   for (int i = 0; i < count; ++i) {
     const std::uint32_t facet = grid[cell[i] < 0 ? 0 : cell[i]];
-    start[i] = (cell[i] >= 0) & lines.travels[i] ? facet : no_facet;
+    start[i] = ((cell[i] >= 0) & lines.travels[i]) ? facet : no_facet;
     __builtin_prefetch(facets + or_any(start[i]));
   }
 

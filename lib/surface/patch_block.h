@@ -19,14 +19,13 @@ struct PatchColumns {
   // Four patches, at i to i + 3, four numbers of each at a time, which a processor's vectors turn into four columns.
   [[gnu::always_inline]] void put(int i, const CloughTocherPatch* const (&patches)[4]) {
     using Four [[gnu::vector_size(32)]] = double;
-    using Choice [[gnu::vector_size(32)]] = std::int64_t;
     for (std::size_t k = 0; k < number_count; k += 4) {
       alignas(32) Four of[4];
       for (int j = 0; j < 4; ++j) std::memcpy(&of[j], reinterpret_cast<const char*>(patches[j]) + k * sizeof(double), sizeof of[j]);
-      const Four low_01 = __builtin_shuffle(of[0], of[1], Choice{0, 4, 2, 6}), high_01 = __builtin_shuffle(of[0], of[1], Choice{1, 5, 3, 7});
-      const Four low_23 = __builtin_shuffle(of[2], of[3], Choice{0, 4, 2, 6}), high_23 = __builtin_shuffle(of[2], of[3], Choice{1, 5, 3, 7});
-      alignas(32) const Four columns[4]{__builtin_shuffle(low_01, low_23, Choice{0, 1, 4, 5}), __builtin_shuffle(high_01, high_23, Choice{0, 1, 4, 5}),
-                            __builtin_shuffle(low_01, low_23, Choice{2, 3, 6, 7}), __builtin_shuffle(high_01, high_23, Choice{2, 3, 6, 7})};
+      const Four low_01 = __builtin_shufflevector(of[0], of[1], 0, 4, 2, 6), high_01 = __builtin_shufflevector(of[0], of[1], 1, 5, 3, 7);
+      const Four low_23 = __builtin_shufflevector(of[2], of[3], 0, 4, 2, 6), high_23 = __builtin_shufflevector(of[2], of[3], 1, 5, 3, 7);
+      alignas(32) const Four columns[4]{__builtin_shufflevector(low_01, low_23, 0, 1, 4, 5), __builtin_shufflevector(high_01, high_23, 0, 1, 4, 5),
+                            __builtin_shufflevector(low_01, low_23, 2, 3, 6, 7), __builtin_shufflevector(high_01, high_23, 2, 3, 6, 7)};
       for (std::size_t j = 0; j < 4; ++j) std::memcpy(&numbers[k + j][i], &columns[j], sizeof columns[j]);
     }
   }

@@ -51,7 +51,7 @@ struct Zernike {
   static constexpr std::array keys{
       numerics::Key{.name = "radius_mm", .meaning = "vertex radius of the base conic",
                     .range = numerics::nonzero_or_infinite, .fallback = std::numeric_limits<double>::infinity()},
-      numerics::Key{.name = "conic_constant", .meaning = "K of the base conic: 0 sphere, -1 paraboloid"},
+      numerics::Key{.name = "conic_constant", .meaning = "K of the base conic: 0 sphere, -1 paraboloid", .range = conic_constants},
       numerics::Key{.name = "normalization_radius_mm", .meaning = "radius at which rho = 1", .required = true,
                     .range = numerics::positive},
       numerics::Key{.name = "indexing", .kind = numerics::ValueKind::text, .meaning = "order and normalisation of the terms",
