@@ -112,7 +112,8 @@ std::optional<double> read_number(const YamlNode& node, const std::string& label
   findings.error(node.place, fmt::format("{} must be {}, not {}", label, in_words(range), shown(node)),
                  !parsed.ok                                    ? number_hint(node)
                  : std::isinf(parsed.value) && !range.infinite ? "it must be finite"
-                                                               : "");
+                 : parsed.value != 0 && std::isfinite(parsed.value) ? std::string(range.reason)
+                                                                    : "");
   return std::nullopt;
 }
 
