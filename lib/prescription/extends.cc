@@ -55,12 +55,12 @@ struct NamedSurfaces {
   explicit NamedSurfaces(const YamlNode& base) {
     for (std::size_t i = 0; i < base.items.size(); ++i) {
       const std::string name = name_of(*base.items[i]);
-      if (!name.empty() && places[name].empty()) names.push_back(name);
+      if (!name.empty()) names.push_back(name);
       places[name].push_back(i);
     }
   }
   std::unordered_map<std::string, std::vector<std::size_t>> places;  // in the list
-  std::vector<std::string> names;                                    // in its order, each once
+  std::vector<std::string> names;                                    // in its order
 };
 
 // The place in the base's list of the surface that an entry names; none, with an error, where there is none or more than one.

@@ -151,7 +151,7 @@ TEST(Finding, AZernikeSumOfNoUsableScaleIsRefused) {
                                                                     "  hint: it is in mm; powers of the radius over it would leave the range of numbers\n"));
   EXPECT_THAT(refused(zernike("1.1e15", "4: 1")), testing::HasSubstr("normalization_radius_mm must be"));
   EXPECT_THAT(refused(zernike("0", "4: 1")), testing::Not(testing::HasSubstr("hint")));
-  EXPECT_THAT(refused(zernike("3", "4: 1e50")), testing::HasSubstr("system.yaml:5:94: error: coefficients_um of index 4 must be a number from -1000000000000000000 to 1000000000000000000, not '1e50'\n"
+  EXPECT_THAT(refused(zernike("3", "4: 1e50")), testing::HasSubstr("system.yaml:5:92: error: coefficients_um of index 4 must be a number from -1e+18 to 1e+18, not '1e50'\n"
                                                                    "  hint: it is in um; the slopes of a larger one would leave the range of numbers\n"));
   EXPECT_THAT(refused(zernike("3", "4: -1.1e18")), testing::HasSubstr("coefficients_um of index 4 must be"));
 }
