@@ -22,21 +22,25 @@ std::string lens(const std::string& medium, const std::string& wavelength_nm = "
 }
 
 // 2026-11-22, compile: behind a medium of index 1e99 a ray's direction was (0, 0, 0), with the status ok: what is left of it beside the normal
-// is below the last digit. At the largest ratio of legal indices, 1e6, a direction's length is still 1 within 1e6 ulp.
+// is below the last digit. At the largest ratio of legal indices, 1e9, a direction's length is off by 1e9 ulp, and by its square once it is corrected.
 TEST(Finding, AnIndexThatLeavesNoDigitsIsRefused) {
   const Folder folder;
   for (const std::string medium : {"{index: 1e99}", "{index: 1e-99}", "{nd: 1e99, vd: 50}", "{nd: 1.5, vd: 1e-99}"}) {
     EXPECT_TRUE(prescription::test::read_text(lens(medium)).findings.has_errors()) << medium;
     EXPECT_EQ(fuzz_compile(folder, lens(medium)), "") << medium;
   }
-  for (const std::string index : {"0.001", "1000"}) {
+  for (const std::string index : {"0.001", "1e6"}) {
     const std::string text = lens("{index: " + index + "}");
     EXPECT_TRUE(prescription::test::read_text(text).model) << index;
     EXPECT_EQ(fuzz_compile(folder, text), "") << index;
   }
+  std::string steps = lens("{index: 1e6}");
+  steps.replace(steps.find("thickness_mm: 5}"), 15, "thickness_mm: 5, medium: {index: 0.001}");
+  EXPECT_TRUE(prescription::test::read_text(steps).model);
+  EXPECT_EQ(fuzz_compile(folder, steps), "");
   prescription::Findings findings;
-  EXPECT_FALSE(prescription::read_material(folder.write("m.yml", "DATA:\n  - {type: formula 5, wavelength_range: 0.3 2.5, coefficients: 1001}\n"), findings));
-  EXPECT_FALSE(prescription::read_material(folder.write("t.yml", "DATA:\n  - type: tabulated n\n    data: |\n      0.5 1001\n      0.6 1001\n"), findings));
+  EXPECT_FALSE(prescription::read_material(folder.write("m.yml", "DATA:\n  - {type: formula 5, wavelength_range: 0.3 2.5, coefficients: 1000001}\n"), findings));
+  EXPECT_FALSE(prescription::read_material(folder.write("t.yml", "DATA:\n  - type: tabulated n\n    data: |\n      0.5 1000001\n      0.6 1000001\n"), findings));
   EXPECT_EQ(findings.error_count(), 3);  // the table has it in both rows
 }
 
@@ -225,6 +229,26 @@ TEST(Finding, KeysOfAFileThatExtendsAnotherReplaceTheBasesInItsOrder) {
   folder.write("base.yaml", base);
   const auto read = prescription::read_prescription(folder.write("changed.yaml", changes));
   EXPECT_THAT(prescription::test::text_of(read.findings), testing::HasSubstr("and 59903 more errors"));  // 60,000 unknown keys, three that are missing
+}
+
+// 2026-11-22, material: a table whose one row stood at 4.9e-324 um had no index half-way between its ends, which is 0.
+TEST(Finding, AMaterialsWavelengthThatIsNoneIsRefused) {
+  const Folder folder;
+  const auto errors_of = [&](const std::string& entry) {
+    prescription::Findings findings;
+    const auto medium = prescription::read_material(folder.write("m.yml", "DATA:\n  - " + entry + "\n"), findings);
+    EXPECT_EQ(medium.has_value(), findings.error_count() == 0);
+    EXPECT_EQ(fuzz_material(folder, "DATA:\n  - " + entry + "\n"), "");
+    return prescription::test::text_of(findings);
+  };
+  for (const std::string um : {"4.9e-324", "9e-10", "1.1e9"}) {
+    EXPECT_THAT(errors_of("{type: tabulated n, data: " + um + " 1.5}"), testing::HasSubstr("the wavelength must be from 1e-09 to 1000000000 um")) << um;
+    EXPECT_THAT(errors_of("{type: formula 5, wavelength_range: " + um + " " + um + ", coefficients: 1.5}"), testing::HasSubstr("is not two wavelengths in um, 1e-09 <= shortest <= longest <= 1000000000")) << um;
+  }
+  for (const std::string um : {"1e-9", "1e9"}) {
+    EXPECT_EQ(errors_of("{type: tabulated n, data: " + um + " 1.5}"), "") << um;
+    EXPECT_EQ(errors_of("{type: formula 5, wavelength_range: " + um + " " + um + ", coefficients: 1.5}"), "") << um;
+  }
 }
 
 // What a target begins with is of use: it gets beyond the reader.
