@@ -19,7 +19,7 @@ class Dispersion {
 };
 
 // What may be an index: wider than any medium is, and narrow enough that a direction keeps its digits from one medium to the next.
-inline constexpr double least_index = 1e-3, largest_index = 1e6;
+inline constexpr double least_index = 1e-3, largest_index = 1e3;
 // Wavelengths at which a medium without a range of its own may be used: an optical path is a number of them that can be squared.
 inline constexpr double least_wavelength_um = 1e-9, largest_wavelength_um = 1e9;
 
