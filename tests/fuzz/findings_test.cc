@@ -252,6 +252,17 @@ TEST(Finding, AMaterialsWavelengthThatIsNoneIsRefused) {
   }
 }
 
+// 2026-11-22, material: this Sellmeier formula has a pole at 2 um, so narrow that the reader does not see it. A system that is used there does.
+TEST(Finding, ANarrowPoleIsSeenWhereItIsUsed) {
+  const Folder folder;
+  const std::string pole = "DATA:\n  - {type: formula 1, wavelength_range: 0.5 2.5, coefficients: 1.2 0.5 0.01 0.3 0.02 1.01 100 0.001 2}\n";
+  EXPECT_EQ(fuzz_material(folder, pole), "");
+  folder.write("pole.yml", pole);
+  const auto at = [&](const std::string& nm) { return prescription::read_prescription(folder.write("system.yaml", lens("pole", nm))); };
+  EXPECT_TRUE(at("1999").model);
+  EXPECT_THAT(prescription::test::text_of(at("2000").findings), testing::HasSubstr("pole has no index from 0.001 to 1000 at 2000 nm"));
+}
+
 // What a target begins with is of use: it gets beyond the reader.
 TEST(Seeds, AreReadAndCompiled) {
   const Folder folder;
