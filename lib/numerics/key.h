@@ -32,6 +32,7 @@ struct Range {
   bool zero = true;        // zero is legal
   bool infinite = false;   // +-infinity is legal (where low and high allow it)
   bool whole = false;      // only whole numbers are legal
+  std::string_view reason = {};  // why the ends are where they are, for those who come to them
 
   bool contains(double v) const {
     const bool inside = open ? (v > low && v < high) : (v >= low && v <= high);

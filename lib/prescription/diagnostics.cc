@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -12,6 +13,7 @@ namespace sagitta::prescription {
 namespace {
 
 constexpr std::size_t excerpt_bytes = 40;
+constexpr std::size_t most_listed = 12, most_candidates = 1000;
 constexpr std::size_t longest_name = 64;  // a longer one is no misspelt key; bounds the time as well
 
 unsigned char byte(std::string_view text, std::size_t i) {
@@ -89,12 +91,19 @@ std::string nearest_name(const std::string& given, const std::vector<std::string
   if (given.empty() || given.size() > longest_name) return {};
   std::string nearest;
   std::size_t least = std::max<std::size_t>(1, given.size() / 3) + 1;
-  for (const std::string& candidate : candidates) {
+  for (const std::string& candidate : std::span(candidates).first(std::min(candidates.size(), most_candidates))) {
     if (candidate.size() > longest_name) continue;
     const std::size_t distance = edit_distance(given, candidate);
     if (distance < least) least = distance, nearest = candidate;
   }
   return nearest;
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  const std::size_t count = std::min(names.size(), most_listed);
+  for (std::size_t i = 0; i < count; ++i) text += (i > 0 ? ", " : "") + excerpt(names[i]);
+  return names.size() > count ? text + " and " + std::to_string(names.size() - count) + " more" : text;
 }
 
 std::string excerpt(const std::string& text) {

@@ -25,6 +25,8 @@ struct Finding {
   std::string hint;  // what to do; empty where there is nothing to add
 };
 
+inline constexpr int most_told_errors = 100;  // that are told of one file and what it extends
+
 class Findings {
  public:
   void add(Finding finding);
@@ -32,6 +34,8 @@ class Findings {
   void warning(Place place, std::string what, std::string hint = {});
   void note(Place place, std::string what, std::string hint = {});
 
+  // What is added from here on is counted, and no longer told: readers need not look for hints.
+  bool is_full() const { return error_count_ >= most_told_errors; }
   bool has_errors() const { return error_count_ > 0; }
   int error_count() const { return error_count_; }
   const std::vector<Finding>& all() const { return findings_; }
@@ -44,8 +48,11 @@ class Findings {
 // "file:line:column: error: what", or "--option: error: what", and, where there is a hint, a second line "  hint: ...".
 std::string format(const Finding& finding);
 
-// The candidate nearest to `given` by edit distance, or "" where none is near: for "did you mean ...".
+// The candidate nearest to `given` by edit distance, of the first 1000, or "" where none is near: for "did you mean ...".
 std::string nearest_name(const std::string& given, const std::vector<std::string>& candidates);
+
+// "a, b, c and 7 more": the first 12 names, an excerpt of each.
+std::string listed(const std::vector<std::string>& names);
 
 // At most 40 bytes of somebody's text, control characters and broken UTF-8 made harmless, "..." where it was cut.
 std::string excerpt(const std::string& text);

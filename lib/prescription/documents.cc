@@ -8,8 +8,6 @@
 namespace sagitta::prescription {
 namespace {
 
-constexpr int most_errors = 100;
-
 // Where a finding stands: the places that name one base after the other, then the place in the last of them.
 struct Position {
   std::size_t depth = 0;  // of the document
@@ -48,14 +46,14 @@ Findings in_order(const Findings& findings, const std::vector<Document>& documen
     depth = next;
   };
   for (const Placed& one : placed) {
-    if (ordered.error_count() == most_errors) break;
+    if (ordered.error_count() == most_told_errors) break;
     go_to(one.at.depth);
     ordered.add(*one.finding);
   }
   go_to(0);
-  if (findings.error_count() > most_errors)
+  if (findings.error_count() > most_told_errors)
     ordered.note({documents.front().file},
-                 "and " + std::to_string(findings.error_count() - most_errors) + " more errors");
+                 "and " + std::to_string(findings.error_count() - most_told_errors) + " more errors");
   return ordered;
 }
 

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <optional>
+#include <unordered_map>
 #include <utility>
 
 #include "lib/prescription/keys.h"
@@ -23,15 +25,16 @@ bool is_shape(const std::string& key) {
   return std::any_of(shape_kinds().begin(), shape_kinds().end(), [&](const ShapeKind& kind) { return kind.name == key; });
 }
 
-Entries::iterator find_entry(Entries& entries, const std::string& key) {
-  return std::find_if(entries.begin(), entries.end(), [&](const YamlNode::Entry& one) { return one.key == key; });
-}
-
-void put(Entries& entries, const YamlNode::Entry& entry) {
-  if (const auto old = find_entry(entries, entry.key); old != entries.end())
-    *old = entry;
-  else
-    entries.push_back(entry);
+// Those of `entries` whose keys the changes have too are replaced, and the others follow.
+void put(Entries& entries, const Entries& changes) {
+  std::unordered_map<std::string, std::size_t> place;
+  for (std::size_t i = 0; i < entries.size(); ++i) place.emplace(entries[i].key, i);
+  for (const YamlNode::Entry& entry : changes) {
+    if (const auto old = place.find(entry.key); old != place.end())
+      entries[old->second] = entry;
+    else
+      entries.push_back(entry);
+  }
 }
 
 std::string name_of(const YamlNode& surface) {
@@ -43,47 +46,48 @@ YamlNode::Pointer with_changes(const YamlNode& surface, const YamlNode& changes)
   auto result = std::make_shared<YamlNode>(surface);
   const auto is_shape_entry = [](const YamlNode::Entry& one) { return is_shape(one.key); };
   if (std::any_of(changes.entries.begin(), changes.entries.end(), is_shape_entry)) std::erase_if(result->entries, is_shape_entry);
-  for (const YamlNode::Entry& entry : changes.entries) put(result->entries, entry);
+  put(result->entries, changes.entries);
   return result;
 }
 
-// The place in the base's list of the surface that an entry names; beyond it, with an error, where there is none or
-// more than one.
-std::size_t find_surface(const YamlNode& base, const YamlNode& entry, Findings& findings) {
-  const std::size_t none = base.items.size();
+// The surfaces of a base by their names.
+struct NamedSurfaces {
+  explicit NamedSurfaces(const YamlNode& base) {
+    for (std::size_t i = 0; i < base.items.size(); ++i) {
+      const std::string name = name_of(*base.items[i]);
+      if (!name.empty()) names.push_back(name);
+      places[name].push_back(i);
+    }
+  }
+  std::unordered_map<std::string, std::vector<std::size_t>> places;  // in the list
+  std::vector<std::string> names;                                    // in its order
+};
+
+// The place in the base's list of the surface that an entry names; none, with an error, where there is none or more than one.
+std::optional<std::size_t> find_surface(const NamedSurfaces& base, const YamlNode& entry, Findings& findings) {
   if (entry.kind != YamlNode::Kind::mapping) {
     refuse(entry, "each of surfaces of a file that extends another", "a mapping with the name of a surface of the base", findings);
-    return none;
+    return std::nullopt;
   }
   const YamlNode::Pointer given = entry.find("name");
   if (!given) {
     findings.error(entry.place, "missing key 'name' in an entry of surfaces",
                    "in a file that extends another it says which surface is changed");
-    return none;
+    return std::nullopt;
   }
-  if (!read_text(*given, "name", {}, findings)) return none;
-  std::vector<std::string> names;
-  std::size_t found = none, count = 0;
-  for (std::size_t i = 0; i < base.items.size(); ++i) {
-    names.push_back(name_of(*base.items[i]));
-    if (names.back() != given->text) continue;
-    found = i;
-    ++count;
-  }
-  if (count == 1) return found;
-  if (count > 1) {
-    findings.error(given->place, fmt::format("{} surfaces of the base are named '{}'", count, excerpt(given->text)),
+  if (!read_text(*given, "name", {}, findings)) return std::nullopt;
+  if (const auto found = base.places.find(given->text); found != base.places.end()) {
+    if (found->second.size() == 1) return found->second.front();
+    findings.error(given->place, fmt::format("{} surfaces of the base are named '{}'", found->second.size(), excerpt(given->text)),
                    "give them names of their own there");
-    return none;
+    return std::nullopt;
   }
-  std::erase(names, "");
-  const std::string near = nearest_name(given->text, names);
-  for (std::string& name : names) name = excerpt(name);
+  const std::string near = findings.is_full() ? "" : nearest_name(given->text, base.names);
   findings.error(given->place, fmt::format("no surface of the base is named '{}'", excerpt(given->text)),
-                 !near.empty()   ? fmt::format("did you mean '{}'?", excerpt(near))
-                 : names.empty() ? "its surfaces have no names"
-                                 : fmt::format("its surfaces are: {}", fmt::join(names, ", ")));
-  return none;
+                 !near.empty()        ? fmt::format("did you mean '{}'?", excerpt(near))
+                 : base.names.empty() ? "its surfaces have no names"
+                                      : fmt::format("its surfaces are: {}", listed(base.names)));
+  return std::nullopt;
 }
 
 YamlNode::Pointer merged_surfaces(const YamlNode::Pointer& base, const YamlNode& changes, Findings& findings) {
@@ -93,16 +97,17 @@ YamlNode::Pointer merged_surfaces(const YamlNode::Pointer& base, const YamlNode&
   }
   if (base->kind != YamlNode::Kind::sequence) return base;  // which is an error of the base
   auto result = std::make_shared<YamlNode>(*base);
+  const NamedSurfaces surfaces(*base);
   std::map<std::size_t, int> changed_on_line;
   for (const YamlNode::Pointer& entry : changes.items) {
-    const std::size_t i = find_surface(*base, *entry, findings);
-    if (i == base->items.size()) continue;
+    const auto i = find_surface(surfaces, *entry, findings);
+    if (!i) continue;
     const Place& place = entry->find("name")->place;
-    if (const auto [before, is_new] = changed_on_line.emplace(i, place.line); !is_new)
+    if (const auto [before, is_new] = changed_on_line.emplace(*i, place.line); !is_new)
       findings.error(place, fmt::format("the surface '{}' is repeated", excerpt(name_of(*entry))),
                      fmt::format("it stands on line {} already", before->second));
     else
-      result->items[i] = with_changes(*base->items[i], *entry);
+      result->items[*i] = with_changes(*base->items[*i], *entry);
   }
   return result;
 }
@@ -115,13 +120,14 @@ void check_version(const YamlNode& base, Findings& findings) {
 
 YamlNode::Pointer merged(const YamlNode& base, const YamlNode& changes, Findings& findings) {
   auto result = std::make_shared<YamlNode>(changes);
-  result->entries = base.entries;
-  for (YamlNode::Entry entry : changes.entries) {
-    const YamlNode::Pointer old = base.find(entry.key);
-    if (entry.key == "surfaces" && old) entry.value = merged_surfaces(old, *entry.value, findings);
+  for (YamlNode::Entry& entry : result->entries) {
     if (entry.key == "sagitta") check_version(base, findings);
-    put(result->entries, entry);
+    if (entry.key != "surfaces") continue;
+    if (const YamlNode::Pointer old = base.find(entry.key)) entry.value = merged_surfaces(old, *entry.value, findings);
   }
+  Entries entries = base.entries;
+  put(entries, std::exchange(result->entries, {}));
+  result->entries = std::move(entries);
   return result;
 }
 
@@ -160,7 +166,7 @@ YamlNode::Pointer read_and_merge(std::vector<Document>& documents, Findings& fin
   const YamlNode::Pointer base = read_and_merge(documents, findings);
   if (!base) return nullptr;
   auto changes = std::make_shared<YamlNode>(*own);
-  changes->entries.erase(find_entry(changes->entries, "extends"));
+  std::erase_if(changes->entries, [](const YamlNode::Entry& one) { return one.key == "extends"; });
   if (base->kind != YamlNode::Kind::mapping) {
     refuse(*base, "a prescription that is extended", "a mapping", findings);
     return nullptr;

@@ -18,6 +18,9 @@ using KeyTable = std::span<const numerics::Key>;
 
 inline constexpr int prescription_version = 1;
 
+// Every surface has an index at every wavelength.
+inline constexpr int most_surfaces = 10'000, most_wavelengths = 1000;
+
 // Those of medium.h, in nm.
 inline constexpr numerics::Range wavelengths_nm_range{1e-6, 1e12};
 
@@ -108,10 +111,12 @@ inline constexpr std::array surface_keys{
                   .kind = numerics::ValueKind::vector3,
                   .meaning = "[x, y, z] turns about the new x, then the new y, then the new z"}};
 
+inline constexpr numerics::Range index_range{.low = medium::least_index, .high = medium::largest_index, .reason = "beyond, directions lose their digits from one medium to the next"};
+
 // Either index, or nd with vd.
 inline constexpr std::array medium_keys{
-    numerics::Key{.name = "index", .meaning = "refractive index at every wavelength", .range = {medium::least_index, medium::largest_index}},
-    numerics::Key{.name = "nd", .meaning = "refractive index at 587.5618 nm", .range = {medium::least_index, medium::largest_index}},
+    numerics::Key{.name = "index", .meaning = "refractive index at every wavelength", .range = index_range},
+    numerics::Key{.name = "nd", .meaning = "refractive index at 587.5618 nm", .range = index_range},
     numerics::Key{.name = "vd", .meaning = "Abbe number", .range = numerics::positive}};
 
 // The shapes of lib/surface/shapes.h.

@@ -117,9 +117,10 @@ class MaterialFile {
     const YamlNode::Pointer coefficients_text = text_of(entry, "coefficients");
     const std::optional<std::vector<double>> range = numbers(range_text);
     const std::optional<std::vector<double>> coefficients = numbers(coefficients_text);
-    if (range && !(range->size() == 2 && (*range)[0] > 0 && (*range)[0] <= (*range)[1]))
+    if (range && !(range->size() == 2 && (*range)[0] >= medium::least_wavelength_um && (*range)[0] <= (*range)[1] && (*range)[1] <= medium::largest_wavelength_um))
       findings_.error(range_text->place,
-                      fmt::format("the range '{}' is not two wavelengths in um, 0 < shortest <= longest", excerpt(range_text->text)),
+                      fmt::format("the range '{}' is not two wavelengths in um, {} <= shortest <= longest <= {}", excerpt(range_text->text),
+                                  medium::least_wavelength_um, medium::largest_wavelength_um),
                       range->size() == 2 && (*range)[0] > (*range)[1] ? "swap them" : "");
     if (coefficients && !formula->accepts(coefficients->size()))
       findings_.error(coefficients_text->place,
@@ -203,8 +204,9 @@ class MaterialFile {
       if (columns.size() != column_count || values.size() != column_count)
         findings_.error(place, fmt::format("'{}' is not a row of {} finite numbers", excerpt(text), column_count),
                         fmt::format("{}; each row on a line of its own below `data: |`", column_count == 3 ? "um, n, k" : "um, n"));
-      else if (!(values[0] > 0 && values[1] >= medium::least_index && values[1] <= medium::largest_index))
-        findings_.error(place, fmt::format("'{}': the wavelength must be positive, and n from {} to {}", excerpt(text), medium::least_index, medium::largest_index));
+      else if (!(values[0] >= medium::least_wavelength_um && values[0] <= medium::largest_wavelength_um && values[1] >= medium::least_index && values[1] <= medium::largest_index))
+        findings_.error(place, fmt::format("'{}': the wavelength must be from {} to {} um, and n from {} to {}", excerpt(text), medium::least_wavelength_um,
+                                           medium::largest_wavelength_um, medium::least_index, medium::largest_index));
       else
         rows.push_back({{values[0], values[1]}, line});
     }

@@ -40,6 +40,10 @@ void read_list(const YamlNode& node, const std::string& label, const std::string
 std::vector<double> read_wavelengths(const YamlNode& node, Findings& findings) {
   std::vector<double> wavelengths;
   std::set<double> seen;
+  if (node.items.size() > most_wavelengths) {
+    findings.error(node.place, fmt::format("{} wavelengths are more than {}", node.items.size(), most_wavelengths), "trace them in several systems");
+    return wavelengths;
+  }
   read_list(node, "wavelengths_nm", "at least one wavelength", findings, [&](const YamlNode& item) {
     const auto wavelength = read_number(item, "each of wavelengths_nm", wavelengths_nm_range, findings);
     if (!wavelength) return;

@@ -132,10 +132,10 @@ std::optional<int> find_surface(const std::string& name, const Place& place, con
   if (number) return number;
   std::vector<std::string> names;
   for (const Surface& one : system.surfaces)
-    if (!one.name.empty()) names.push_back(one.name);
+    if (!findings.is_full() && !one.name.empty()) names.push_back(one.name);
   const std::string meant = nearest_name(name, names);
   findings.error(place, fmt::format("there is no surface '{}' in {}", excerpt(name), fs::path(system.file).filename().string()),
-                 meant.empty() ? fmt::format("its surfaces are: {}", fmt::join(names, ", ")) : fmt::format("did you mean '{}'?", meant));
+                 meant.empty() ? fmt::format("its surfaces are: {}", listed(names)) : fmt::format("did you mean '{}'?", meant));
   return std::nullopt;
 }
 

@@ -97,6 +97,10 @@ std::vector<Surface> read_surfaces(const YamlNode& list, MediumReader& media, Fi
     refuse(list, "surfaces", "a list of at least 2, the last one being the image surface", findings);
     if (list.kind != YamlNode::Kind::sequence) return surfaces;
   }
+  if (list.items.size() > most_surfaces) {
+    findings.error(list.place, fmt::format("{} surfaces are more than {}", list.items.size(), most_surfaces));
+    return surfaces;
+  }
   struct Stop {
     std::size_t number;
     Place place;

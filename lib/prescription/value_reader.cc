@@ -109,9 +109,11 @@ std::optional<double> read_number(const YamlNode& node, const std::string& label
     return std::nullopt;
   }
   if (parsed.ok && range.contains(parsed.value)) return parsed.value;
+  const bool is_too_far = parsed.ok && std::isfinite(parsed.value) && parsed.value != 0 && !range.contains(-parsed.value);
   findings.error(node.place, fmt::format("{} must be {}, not {}", label, in_words(range), shown(node)),
                  !parsed.ok                                    ? number_hint(node)
                  : std::isinf(parsed.value) && !range.infinite ? "it must be finite"
+                 : is_too_far                                  ? std::string(range.reason)
                                                                : "");
   return std::nullopt;
 }

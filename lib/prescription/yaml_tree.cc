@@ -31,6 +31,7 @@ namespace {
 constexpr std::size_t most_bytes = std::size_t{1} << 20;
 constexpr std::size_t most_nodes = 200'000;
 constexpr std::size_t most_depth = 100;
+const std::string too_much_text = "more than " + std::to_string(most_bytes >> 20) + " MiB of text, with every alias expanded";
 const std::string too_many_values = "more than " + std::to_string(most_nodes) + " values, with every alias expanded";
 
 // Ends the parse with one finding.
@@ -51,12 +52,12 @@ class TreeBuilder : public YAML::EventHandler {
  private:
   struct Subtree {
     YamlNode::Pointer node;
-    std::size_t size = 1, height = 1;  // in nodes, every alias expanded
+    std::size_t size = 1, height = 1, bytes = 0;  // in nodes, and of text, every alias expanded
   };
   struct Open {  // a list or mapping that has not ended yet
     std::shared_ptr<YamlNode> node;
     YAML::anchor_t anchor;
-    std::size_t size = 1, height = 1;
+    std::size_t size = 1, height = 1, bytes = 0;
     std::optional<std::pair<std::string, Place>> key = std::nullopt;  // of a mapping, while its value is awaited
     std::unordered_map<std::string, int> key_lines = {};
   };
@@ -104,7 +105,9 @@ class TreeBuilder : public YAML::EventHandler {
 
   void count(const YAML::Mark& mark, const Subtree& subtree) {
     node_count_ += subtree.size;
+    byte_count_ += subtree.bytes;
     if (node_count_ > most_nodes) throw Stop{place(mark), too_many_values, ""};
+    if (byte_count_ > most_bytes) throw Stop{place(mark), too_much_text, ""};
     if (open_.size() + subtree.height > most_depth)
       throw Stop{place(mark), "nested more than " + std::to_string(most_depth) + " deep", ""};
   }
@@ -118,7 +121,7 @@ class TreeBuilder : public YAML::EventHandler {
         kind == YamlNode::Kind::null && !open_.empty() && open_.back().key ? open_.back().key->second : place(mark);
     node->text = text;
     node->quoted = quoted;
-    const Subtree subtree{node};
+    const Subtree subtree{node, 1, 1, text.size()};
     count(mark, subtree);
     add(subtree, node->place);
     if (anchor) anchored_[anchor] = subtree;
@@ -137,7 +140,7 @@ class TreeBuilder : public YAML::EventHandler {
   void close() {
     Open ended = std::move(open_.back());
     open_.pop_back();
-    const Subtree subtree{ended.node, ended.size, ended.height};
+    const Subtree subtree{ended.node, ended.size, ended.height, ended.bytes};
     if (ended.anchor) anchored_[ended.anchor] = subtree;
     add(subtree, ended.node->place);
   }
@@ -150,6 +153,7 @@ class TreeBuilder : public YAML::EventHandler {
     }
     Open& parent = open_.back();
     parent.size += child.size;
+    parent.bytes += child.bytes;
     parent.height = std::max(parent.height, child.height + 1);
     if (parent.node->kind == YamlNode::Kind::sequence) {
       parent.node->items.push_back(child.node);
@@ -170,7 +174,7 @@ class TreeBuilder : public YAML::EventHandler {
   std::string file_;
   std::vector<Open> open_;
   std::unordered_map<YAML::anchor_t, Subtree> anchored_;
-  std::size_t node_count_ = 0;
+  std::size_t node_count_ = 0, byte_count_ = 0;
 };
 
 // What yaml-cpp says. Some of its messages end with text of the file, of any length.

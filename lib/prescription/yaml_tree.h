@@ -33,7 +33,7 @@ struct YamlNode {
   Pointer find(std::string_view key) const;
 };
 
-// Limits: 1 MiB of text, nesting of 100, 200,000 nodes with every alias expanded. Beyond them, or for text that is not
+// Limits: 1 MiB of text and 200,000 nodes, both with every alias expanded, nesting of 100. Beyond them, or for text that is not
 // YAML (UTF-8, without tags), an error is added and the result is null. A missing, unreadable or empty file is an error
 // too.
 YamlNode::Pointer read_yaml(const std::string& file, Findings& findings);

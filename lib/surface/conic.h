@@ -60,7 +60,7 @@ Crossing<T> crossing_of_conic(const Vec3<T>& start, const Vec3<T>& p, const Vec3
 }
 
 // Of K: beyond 1e15 or so, K times the rounding of z leaves nothing of the normal.
-inline constexpr numerics::Range conic_constants{-1e9, 1e9};
+inline constexpr numerics::Range conic_constants{.low = -1e9, .high = 1e9, .reason = "beyond, rounding leaves too few digits of the normal"};
 
 struct Conic {
   static constexpr std::string_view kind = "conic";

@@ -26,6 +26,8 @@
 namespace sagitta::surface {
 
 inline constexpr int most_first_crossing_looks = 1000;
+// Far outside of what a departure is given for, its heights and slopes grow as high powers do; up to here their squares are numbers.
+inline constexpr double largest_departure = 1e100;
 
 // The surface has base, height(x, y), and
 //   T reach_from(r): a radius R > r to bound p within;   T bend_within(R): b_p(R).
@@ -45,7 +47,7 @@ Crossing<T> first_crossing(const Surface& surface, const Crossing<T>& start, con
       sense = (f < T(0)) == (start.along > T(0)) ? T(1) : T(-1);
     }
     const T F = sign * f, falls = -sign * sense * slope;  // -F'
-    if (!(F - F == T(0)) || !(falls - falls == T(0))) break;
+    if (!(F + abs(h.dz_dx) + abs(h.dz_dy) <= T(largest_departure))) break;
     const T scale = abs(origin.x) + abs(origin.y) + abs(origin.z) + abs(t);
     const bool at_rounding = F <= eps * (abs(at.z) + h.magnitude);
     const T newton = F / falls;

@@ -53,11 +53,12 @@ struct Zernike {
                     .range = numerics::nonzero_or_infinite, .fallback = std::numeric_limits<double>::infinity()},
       numerics::Key{.name = "conic_constant", .meaning = "K of the base conic: 0 sphere, -1 paraboloid", .range = conic_constants},
       numerics::Key{.name = "normalization_radius_mm", .meaning = "radius at which rho = 1", .required = true,
-                    .range = numerics::positive},
+                    .range = {.low = 1e-15, .high = 1e15, .reason = "it is in mm; powers of the radius over it would leave the range of numbers"}},
       numerics::Key{.name = "indexing", .kind = numerics::ValueKind::text, .meaning = "order and normalisation of the terms",
                     .required = true, .choices = numerics::zernike_indexings},
       numerics::Key{.name = "coefficients_um", .kind = numerics::ValueKind::indexed,
                     .meaning = "coefficient of each term: {index: value} or a list from the first", .required = true,
+                    .range = {.low = -1e18, .high = 1e18, .reason = "it is in um; the slopes of a larger one would leave the range of numbers"},
                     .indexed_by = "indexing", .indices = [](std::string_view name) {
                       const auto indexing = numerics::zernike_indexing(name);
                       return numerics::IndexRange{numerics::first_zernike_index(indexing), numerics::last_zernike_index(indexing)};
