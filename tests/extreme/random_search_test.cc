@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// A few of the random systems of random_search_slow_test.cc, and one alone: SAGITTA_SEED=123 replays what was found with that seed, and
+// prints the system. (Some have surfaces of points, delaunay.)
+#include <cstdlib>
+
+#include "tests/extreme/wild_search.h"
+
+namespace sagitta::test {
+namespace {
+
+TEST(RandomSearch, LawsHoldInAFewWildSystems) {
+  const Found found = search_systems(0, 300);
+  for (const std::string& complaint : found.complaints) ADD_FAILURE() << complaint;
+}
+
+TEST(RandomSearch, ReplaysOneSeed) {
+  const char* seed = std::getenv("SAGITTA_SEED");
+  if (!seed) GTEST_SKIP() << "SAGITTA_SEED is not set";
+  Examination one(std::strtoull(seed, nullptr, 10), true);
+  fmt::print("{}", one.yaml());
+  const Found found = one.take();
+  for (const auto& [name, count] : found.counts) fmt::print("{:8} {}\n", count, name);
+  for (const auto& [name, worst] : found.worst) fmt::print("{:.3g} {}: {}\n", worst.value, name, worst.where);
+  for (const std::string& complaint : found.complaints) ADD_FAILURE() << complaint;
+}
+
+}  // namespace
+}  // namespace sagitta::test
