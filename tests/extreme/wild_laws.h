@@ -109,16 +109,16 @@ inline double snell(const Passage& at) {
   return is_sure && goes_on == at.surface().mirror ? std::numeric_limits<double>::infinity() : std::max(refracted, coplanar);
 }
 
-// Fermat: the path from A before to B behind over Q on the surface is stationary at the hit: its slope from a difference over 2h, of an error of h^2,
-// along two tangents. By Snell's law at the exact hit it is what snell() allows, times the tangent's length.
-inline double fermat(const Passage& at) {
-  if (at.surface().image) return 0;
+// Fermat: the path from A before to B behind over Q on the surface is stationary at the hit, to second order: its slope from a difference over 2h, of an error
+// of h^2, along two tangents. By Snell's law at the exact hit it is what snell() allows, times the tangent's length. None: on the image, beyond the equator by
+// rounding, or on an edge between facets.
+inline std::optional<double> fermat(const Passage& at) {
+  if (at.surface().image) return std::nullopt;
   const Equation equation(at);
-  const Vec3<Exact>& p = at.behind.position;
-  const Exact length = norm(p) + Exact(at.scale), h = length * Exact(1e-18);
+  const Vec3<Exact>&p = at.behind.position, gradient = equation.gradient(p);
+  const Exact length = norm(p) + Exact(at.scale), h = length * Exact(1e-18) / norm(gradient);
   const Vec3<Exact> A = p - length * at.exact.direction, B = p + length * at.behind.direction;
   const Exact z = equation.sag(p.x, p.y);
-  if (!(z == z)) return 0;  // rounding has it beyond the equator
   double worst = 0;
   for (const bool is_x : {true, false}) {
     const auto beside = [&](const Exact& step) {
@@ -127,7 +127,9 @@ inline double fermat(const Passage& at) {
     };
     const auto opl = [&](const Vec3<Exact>& q) { return Exact(at.index_before()) * norm(q - A) + Exact(at.index_behind()) * norm(B - q); };
     const Vec3<Exact> forth = beside(h), back = beside(-h);
-    if (!(forth.z == forth.z && back.z == back.z)) continue;
+    if (!(forth.z - z - back.z == forth.z - z - back.z)) return std::nullopt;
+    const Exact rises = (is_x ? Exact(-gradient.x) : Exact(-gradient.y)) / gradient.z * h;
+    if (size_of(Exact(forth.z - p.z - rises)) + size_of(Exact(back.z - p.z + rises)) > 1e-12 * size_of(Exact(h * norm(gradient)))) return std::nullopt;
     const double tangent = size_of(forth - back) / size_of(Exact(2 * h));
     const double most = tangent * ((at.index_before() + at.index_behind()) * at.bound.normal + at.index_behind() * at.bound.direction);
     worst = std::max(worst, part((opl(forth) - opl(back)) / (Exact(2) * h), most));
