@@ -66,15 +66,17 @@ std::size_t nearest_to_bound(const study::Rounding& rounding) {
 }
 
 std::string what_bounds_say(const study::Rounding& rounding) {
+  std::int64_t known = 0, unknown = 0;
+  for (const SurfaceRounding& one : rounding.surfaces) known += one.bound_position_mm.count(), unknown += one.without_bound;
   const std::size_t number = nearest_to_bound(rounding);
   const double part = rounding.surfaces[number].of_bound;
-  if (std::none_of(rounding.surfaces.begin(), rounding.surfaces.end(), [](const SurfaceRounding& one) { return one.bound_position_mm.count() > 0; })) return "";
-  std::string text = part <= 1 ? fmt::format("every loss is explained by the geometry: at most {:.2f} of what it can do to a ray, at surface {}", part, number)
-                               : fmt::format("surface {} loses {:.2g} times what the geometry can explain: please report this system", number, part);
-  std::int64_t unknown = 0;
-  for (const SurfaceRounding& one : rounding.surfaces) unknown += one.without_bound;
-  if (unknown > 0) text += fmt::format("; of {} hit{} nothing can be said: rounding moves them by as much as the surface turns within", unknown, unknown == 1 ? "" : "s");
-  return text + "\n";
+  std::string text;
+  if (known > 0)
+    text = part == 0   ? "no surface loses anything\n"
+           : part <= 1 ? fmt::format("every loss is explained by the geometry: at most {:.2g} of what it can do to a ray, at surface {}\n", part, number)
+                       : fmt::format("surface {} loses {:.2g} times what the geometry can explain: please report this system\n", number, part);
+  if (unknown > 0) text += fmt::format("of {} hit{} no bound is known: rounding moves them by as much as the surface turns within\n", unknown, unknown == 1 ? "" : "s");
+  return text;
 }
 
 ordered_json json_of(const Spoiled& spoiled) {
