@@ -35,12 +35,14 @@ struct Passage {
 // z - S(x, y) = 0 by the user's numbers.
 class Equation {
  public:
-  explicit Equation(const Passage& at) : compiled_(at.surface().shape) {
+  explicit Equation(const Passage& at) : Equation(at.surface().shape, at.given) {}
+  Equation(const surface::Shape& compiled, const prescription::Shape& given) : compiled_(compiled) {
     if (const auto* sphere = std::get_if<surface::Sphere>(&compiled_)) conic_ = TextbookConic<Exact>{Exact(sphere->curvature), Exact(1)};
     if (const auto* conic = std::get_if<surface::Conic>(&compiled_)) conic_ = TextbookConic<Exact>{Exact(conic->curvature), Exact(1) + Exact(conic->conic_constant)};
     if (const auto* zernike = std::get_if<surface::Zernike>(&compiled_))
-      zernike_.emplace(TextbookConic<Exact>{Exact(zernike->base.curvature), Exact(1) + Exact(zernike->base.conic_constant)}, at.given.parameters);
+      zernike_.emplace(TextbookConic<Exact>{Exact(zernike->base.curvature), Exact(1) + Exact(zernike->base.conic_constant)}, given.parameters);
   }
+  const std::optional<TextbookConic<Exact>>& conic() const { return conic_; }
   Exact sag(const Exact& x, const Exact& y) const {
     if (conic_) return conic_->sag(x * x + y * y);
     if (zernike_) return zernike_->height(x, y, Exact(1)).z;
@@ -86,10 +88,13 @@ inline double own_error(const Passage& at) {
 // The hit lies on the surface and on the ray: within b.position of the exact hit, so the residual is below |gradient| b.position; twice for what the gradient
 // changes on the way (a tenth at most, or there is no bound). The compiled curvature and coefficients are those that the user wrote to u of
 // each term, which b.position holds twice.
+// Of a conic's two crossings it is the one that the textbook takes.
 inline double off_surface(const Passage& at) {
   const Equation equation(at);
   const Vec3<Exact>&p = at.behind.position, n = equation.gradient(p);
   const double size = size_of(n);
+  if (const auto& conic = equation.conic())
+    if (const double other = part(p - conic->meet(at.exact.start, at.exact.direction).point, at.bound.position); other > 1) return other;
   return std::max(part(equation.residual(p), 2 * size * at.bound.position), part(cross(p - at.exact.start, at.exact.direction), at.bound.position));
 }
 

@@ -137,7 +137,15 @@ class Examination {
         ends_differently(view, from_number, number, from, exact, here.ended, where);
         break;
       }
-      if (here.ended != 0) break;
+      if (here.ended != 0) {
+        const Equation equation(scene_.surface(number).shape, model_.surfaces[static_cast<std::size_t>(number - 1)].shape);
+        const bool is_missed = here.ended % 8 == static_cast<int>(Status::missed);
+        if (equation.conic()) {
+          count("conics that end a ray");
+          if (is_missed != (equation.conic()->meet(exact.start, exact.direction).status == Status::missed)) complain("missed by the tracer or by the textbook alone: " + where);
+        }
+        break;
+      }
       const RoundingBound bound = rounding_bound(view, from_number, number, from, exact);
       count("passages"), ++passed;
       if (bound.position + bound.direction + bound.opl < std::numeric_limits<double>::infinity())
