@@ -59,6 +59,26 @@ std::string verdict(const RoundingReport& report) {
   return text + "\n";
 }
 
+// The surface whose own errors are the largest part of their bounds.
+std::size_t nearest_to_bound(const study::Rounding& rounding) {
+  const auto& surfaces = rounding.surfaces;
+  return static_cast<std::size_t>(std::max_element(surfaces.begin(), surfaces.end(), [](const auto& a, const auto& b) { return a.of_bound < b.of_bound; }) - surfaces.begin());
+}
+
+std::string what_bounds_say(const study::Rounding& rounding) {
+  std::int64_t known = 0, unknown = 0;
+  for (const SurfaceRounding& one : rounding.surfaces) known += one.bound_position_mm.count(), unknown += one.without_bound;
+  const std::size_t number = nearest_to_bound(rounding);
+  const double part = rounding.surfaces[number].of_bound;
+  std::string text;
+  if (known > 0)
+    text = part == 0   ? "no surface loses anything\n"
+           : part <= 1 ? fmt::format("every loss is explained by the geometry: at most {:.2g} of what it can do to a ray, at surface {}\n", part, number)
+                       : fmt::format("surface {} loses {:.2g} times what the geometry can explain: please report this system\n", number, part);
+  if (unknown > 0) text += fmt::format("of {} hit{} no bound is known: rounding moves them by as much as the surface turns within\n", unknown, unknown == 1 ? "" : "s");
+  return text;
+}
+
 ordered_json json_of(const Spoiled& spoiled) {
   if (spoiled.count() == 0) return nullptr;
   return {{"worst", spoiled.worst()}, {"rms", spoiled.rms()}};
@@ -83,13 +103,13 @@ int surface_to_blame(const RoundingReport& report) {
 
 std::string rounding_text(const RoundingReport& report) {
   const study::Rounding& rounding = report.rounding;
-  Table surfaces{{{"surface", ""}, {"name", "", true}, {"position", "worst mm"}, {"", "rms mm"}, {"", "ulp"}, {"direction", "rad"}, {"OPL", "mm"}, {"own", "mm"}, {"digits", "lost"},
+  Table surfaces{{{"surface", ""}, {"name", "", true}, {"position", "worst mm"}, {"", "rms mm"}, {"", "ulp"}, {"direction", "rad"}, {"OPL", "mm"}, {"own", "mm"}, {"", "of bound"}, {"digits", "lost"},
                   {"where", "they are lost", true}, {"in the image", "mm"}, {"", "waves"}}, {}};
   for (std::size_t k = 0; k < rounding.surfaces.size(); ++k) {
     const SurfaceRounding& one = rounding.surfaces[k];
     surfaces.rows.push_back({std::to_string(k), name_of(report, k), size(one.position_mm), mean_size(one.position_mm),
                              one.position_mm.count() > 0 ? fmt::format("{:.1f}", one.position_mm.worst() / (0x1p-52 * rounding.scale_mm)) : "-", size(one.direction_rad), size(one.opl_mm),
-                             size(one.own_position_mm), fmt::format("{:.1f}", one.digits_lost), one.cause, size(one.share_mm), size(one.share_waves)});
+                             size(one.own_position_mm), one.bound_position_mm.count() > 0 ? fmt::format("{:.2f}", one.of_bound) : "-", fmt::format("{:.1f}", one.digits_lost), one.cause, size(one.share_mm), size(one.share_waves)});
   }
   Table fields{{{"field", ""}, {"wavelength", "nm"}, {"rays", ""}, {"arrive", ""}, {"position", "worst mm"}, {"OPD", "worst waves"}, {"remark", "", true}}, {}};
   for (const FieldRounding& one : rounding.fields)
@@ -104,7 +124,7 @@ std::string rounding_text(const RoundingReport& report) {
                         ending(one.status, one.surface), ending(one.exact_status, one.exact_surface), one.is_on_rim ? "; on the rim, within the tolerance" : "");
   }
   if (rounding.disagreements.size() > most_listed) text += fmt::format("and {} more\n", rounding.disagreements.size() - most_listed);
-  return text + verdict(report);
+  return text + what_bounds_say(rounding) + verdict(report);
 }
 
 namespace {
@@ -120,7 +140,8 @@ ordered_json json_of(const RoundingReport& report) {
     const SurfaceRounding& one = rounding.surfaces[k];
     json["surfaces"].push_back({{"surface", k}, {"name", name_of(report, k)}, {"position_mm", json_of(one.position_mm)}, {"direction_rad", json_of(one.direction_rad)}, {"opl_mm", json_of(one.opl_mm)},
                                 {"own_position_mm", json_of(one.own_position_mm)}, {"own_direction_rad", json_of(one.own_direction_rad)}, {"own_opl_mm", json_of(one.own_opl_mm)},
-                                {"digits_lost", one.digits_lost}, {"cause", one.cause}, {"share_mm", json_of(one.share_mm)}, {"share_waves", json_of(one.share_waves)}});
+                                {"bound_position_mm", json_of(one.bound_position_mm)}, {"bound_direction_rad", json_of(one.bound_direction_rad)}, {"bound_opl_mm", json_of(one.bound_opl_mm)},
+                                {"of_bound", one.bound_position_mm.count() > 0 ? ordered_json(one.of_bound) : ordered_json()}, {"without_bound", one.without_bound}, {"digits_lost", one.digits_lost}, {"cause", one.cause}, {"share_mm", json_of(one.share_mm)}, {"share_waves", json_of(one.share_waves)}});
   }
   for (const FieldRounding& one : rounding.fields)
     json["fields"].push_back({{"field", one.field}, {"wavelength_nm", report.system.wavelengths_nm[one.wavelength]}, {"rays", one.rays}, {"arrived", one.arrived},

@@ -11,8 +11,8 @@
 
 #include "lib/analysis/wavefront.h"
 #include "lib/numerics/parallel.h"
-#include "lib/study/fifty_digits_internal.h"
-#include "lib/study/through_internal.h"
+#include "lib/study/exact_steps_internal.h"
+#include "lib/study/rounding_bound_internal.h"
 #include "lib/trace/launch_rays.h"
 #include "lib/trace/pattern.h"
 #include "lib/trace/trace.h"
@@ -20,12 +20,7 @@
 namespace sagitta::study {
 namespace {
 
-using Exact = FiftyDigits;
-using ExactRay = Path<Exact>;
 using analysis::ReferenceSphere;
-
-double size_of(const Exact& value) { return std::abs(static_cast<double>(value)); }
-double size_of(const Vec3<Exact>& value) { return static_cast<double>(norm(value)); }
 
 const surface::Facets* facets_in(const surface::Shape& shape) {
   return std::visit([]<class S>(const S& of) -> const surface::Facets* {
@@ -34,29 +29,6 @@ const surface::Facets* facets_in(const surface::Shape& shape) {
     else return nullptr;
   }, shape);
 }
-
-// A scene at one of its wavelengths, as exact rays see it.
-struct View {
-  const scene::Scene& scene;
-  const scene::Wavelength& wavelength;
-
-  int surface_count() const { return scene.surface_count(); }
-  double index_before(int number) const { return wavelength.index[static_cast<std::size_t>(number - 1)]; }
-  double index_behind(int number) const { return wavelength.index[static_cast<std::size_t>(number)]; }
-  bool is_dummy(int number) const { return scene.surface(number).does_nothing(index_before(number), index_behind(number)); }
-
-  surface::Crossing<Exact> meet(int number, const Vec3<Exact>& p, const Vec3<Exact>& d) const {
-    return std::visit([&](const auto& shape) -> surface::Crossing<Exact> { return shape.meet(p, d); }, scene.surface(number).shape);
-  }
-  ExactRay step(int number, const ExactRay& ray) const {
-    return through(scene.surface(number), number, index_before(number), index_behind(number), ray,
-                   [&](const Vec3<Exact>& p, const Vec3<Exact>& d) { return meet(number, p, d); });
-  }
-  ExactRay to_image(int behind, ExactRay ray) const {
-    for (int number = behind + 1; number <= surface_count(); ++number) ray = step(number, ray);
-    return ray;
-  }
-};
 
 // The tracer's rays: launched, then behind every surface.
 std::vector<trace::RayBatch> tracer_states(const View& view, trace::RayBatch launched) {
@@ -73,22 +45,11 @@ std::vector<ExactRay> launch_exactly(const View& view, const scene::Field& field
   return rays;
 }
 
-// Its length is the tracer's error too, and stays with the step that made it.
-ExactRay as_exact(const trace::RayBatch& state, std::size_t i) {
-  return {numerics::vec3_cast<Exact>(state.position(i)), numerics::normalized(numerics::vec3_cast<Exact>(state.direction(i))), state.ended[i], Exact(state.opl[i])};
-}
-
-struct Differences {
-  double position = 0, direction = 0, opl = 0;
-};
-Differences differences(const ExactRay& ray, const ExactRay& truth) {
-  return {size_of(ray.position - truth.position), size_of(ray.direction - truth.direction), size_of(ray.opl - truth.opl)};
-}
-
 // One ray in both ways.
 struct Track {
   std::int32_t ended = 0, exact_ended = 0;
   std::vector<Differences> errors, own;  // [0] the launch, [k] surface k, as far as the ray comes
+  std::vector<RoundingBound> bounds;     // of own; [0] of surface 1
   std::vector<ExactRay> in_image;        // X_k, where both arrive
   ExactRay exact_in_image;
   double rim_distance = std::numeric_limits<double>::infinity();  // of a ray that ends in one way only, from the aperture that ends it
@@ -125,10 +86,10 @@ Track track(const View& view, const std::vector<trace::RayBatch>& states, const 
   if (result.ended == 0) result.in_image.push_back(view.to_image(0, from));
   for (int number = 1; number <= comes_to; ++number) {
     const ExactRay here = as_exact(states[static_cast<std::size_t>(number)], i);
-    ExactRay expected = from;
-    for (int next = from_number + 1; next <= number; ++next) expected = view.step(next, expected);
+    const ExactStep expected = view.look_past(from_number, number, from);
     result.errors.push_back(differences(here, exact[static_cast<std::size_t>(number)]));
-    result.own.push_back(differences(here, expected));
+    result.own.push_back(differences(here, expected.behind));
+    result.bounds.push_back(rounding_bound(view, from_number, number, from, expected));
     const bool is_passed_by = view.is_dummy(number);
     if (!is_passed_by) from = here, from_number = number;
     if (result.ended == 0) result.in_image.push_back(is_passed_by ? result.in_image.back() : view.to_image(number, here));
@@ -196,14 +157,12 @@ double smallest_angle_sine(const surface::Facets& facets, const Vec3<Exact>& poi
 // By which geometry enlarges rounding at one ray's crossing.
 std::string cause_at(const View& view, int number, const ExactRay& before, double scale) {
   const scene::Surface& surface = view.scene.surface(number);
-  const auto local = transform_cast<Exact>(surface.local_from_previous);
-  const Vec3<Exact> d = local.rotation * before.direction;
-  const surface::Crossing<Exact> crossing = view.meet(number, local * before.position, d);
+  const ExactStep step = view.look(number, before);
+  const surface::Crossing<Exact>& crossing = step.crossing;
   if (crossing.status != Status::ok) return "";
   const Exact length = norm(crossing.normal);
   const double cosine = size_of(Exact(crossing.along / length)), steep = static_cast<double>(Exact(length / crossing.normal.z));
-  const ExactRay behind = view.step(number, before);
-  const double cosine_behind = behind.ended == 0 ? size_of(Exact(dot(behind.direction, crossing.normal) / length)) : 0;
+  const double cosine_behind = step.behind.ended == 0 ? size_of(Exact(dot(step.behind.direction, crossing.normal) / length)) : 0;
   const surface::Facets* facets = facets_in(surface.shape);
   const double mu = view.index_before(number) / view.index_behind(number);
   std::vector<Factor> factors{{"near-grazing incidence", 1 / cosine},
@@ -267,6 +226,7 @@ class Gatherer {
       surface.position_mm.add(one.errors[k].position), surface.direction_rad.add(one.errors[k].direction), surface.opl_mm.add(one.errors[k].opl);
       surface.own_position_mm.add(one.own[k].position), surface.own_direction_rad.add(one.own[k].direction), surface.own_opl_mm.add(one.own[k].opl);
       if (k == 0) continue;
+      compare_with_bound(one.own[k], one.bounds[k - 1], surface);
       const int number = static_cast<int>(k);
       const double lost = loss(one.own[k].position, one.own[k].direction, one.own[k].opl);
       if (lost > worst_[k].loss) {
@@ -276,6 +236,15 @@ class Gatherer {
       }
       if (!view.is_dummy(number)) from = k;
     }
+  }
+  static void compare_with_bound(const Differences& own, const RoundingBound& bound, SurfaceRounding& surface) {
+    if (!(bound.position + bound.direction + bound.opl < std::numeric_limits<double>::infinity())) {
+      ++surface.without_bound;
+      return;
+    }
+    surface.bound_position_mm.add(bound.position), surface.bound_direction_rad.add(bound.direction), surface.bound_opl_mm.add(bound.opl);
+    const auto ratio = [](double error, double most) { return error > 0 ? error / most : 0; };
+    surface.of_bound = std::max({surface.of_bound, ratio(own.position, bound.position), ratio(own.direction, bound.direction), ratio(own.opl, bound.opl)});
   }
   void add_in_image(const Bundle& bundle, std::size_t i, FieldRounding& field) {
     const Track& one = bundle.tracks[i];

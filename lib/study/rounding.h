@@ -19,6 +19,10 @@
 //   near-grazing incidence 1/cos I;  near the critical angle 1/cos I';  steep surface sqrt(1 + |grad z|^2);  long distance |t|/scale;
 //   strong curvature |c| scale;  ill-conditioned facet 1/sin(its smallest angle);  index ratio near 1, where nothing else is to blame.
 //
+// Bounds: what rounding can do at most to one ray at one surface, from the counts of roundings and the geometry at that ray's own crossing
+// (rounding_bound_internal.h: distances, cosines before and behind, curvatures, the sizes of the terms of the surface's equation). An own
+// error beyond its bound is not the geometry's doing: it is a fault of the tracer, or of the bound.
+//
 // Source: the model of computation is Higham, Accuracy and Stability of Numerical Algorithms (2nd ed., 2002), chapter 1.
 #pragma once
 
@@ -53,6 +57,9 @@ struct SurfaceRounding {
   Spoiled position_mm, direction_rad, opl_mm;              // errors behind it, in its frame
   Spoiled own_position_mm, own_direction_rad, own_opl_mm;  // (1)
   Spoiled share_mm, share_waves;                           // (2), of the place in the image, of the OPD
+  Spoiled bound_position_mm, bound_direction_rad, bound_opl_mm;  // of the own errors, ray by ray
+  double of_bound = 0;                                     // worst own error in units of its own ray's bound
+  std::int64_t without_bound = 0;                          // rays of which the analysis says nothing: the hit as a whole is uncertain
   double digits_lost = 0;
   std::string cause;                                       // "" where less than one digit is lost
 };

@@ -98,6 +98,41 @@ TEST(Rounding, NamesTheCriticalAngle) {
   EXPECT_GT(surface.own_direction_rad.worst(), 1e-18 / cosine);
 }
 
+// A lens that is no burden: its own errors are within the bounds, and these are no more than 100 to 200 roundings of its size: what the counts of
+// rounding_bound_internal.h come to at cosines of about 1.
+TEST(Rounding, StaysWithinBoundsThatAreNarrow) {
+  const auto compiled = checked(scene::compile(
+      system_of({surface_of(conic_shape(30, -.5), 4, 1.5), surface_of(conic_shape(-40, 0), 2, 1), surface_of({}, 1, 1),  // the last one is a dummy
+                 surface_of(zernike_shape(25, .2, 6, {{3, 2.0}, {8, -1.5}}), 5, 1.6), surface_of(conic_shape(-60, -2), 30, 1)}, 9, {0, 11})));
+  const Rounding rounding = rounding_of(compiled.scene, {.rays = 100});
+  for (std::size_t k = 1; k < rounding.surfaces.size(); ++k) {
+    const auto& surface = rounding.surfaces[k];
+    EXPECT_EQ(surface.bound_position_mm.count(), rounding.rays);
+    EXPECT_EQ(surface.without_bound, 0);
+    EXPECT_GT(surface.of_bound, 0);
+    EXPECT_LE(surface.of_bound, 1);
+    EXPECT_LE(surface.own_position_mm.worst(), surface.bound_position_mm.worst());
+    EXPECT_LT(surface.bound_position_mm.worst(), 100 * 0x1p-52 * rounding.scale_mm);
+    EXPECT_LT(surface.bound_direction_rad.worst(), 200 * 0x1p-52);
+    EXPECT_LT(surface.bound_opl_mm.worst(), 200 * 0x1p-52 * rounding.scale_mm);
+  }
+}
+
+// Six rays parallel to the axis at a height of R (1 - 1e-8), where 1/cos I is 7071, and at R/10: the bound, and what may be lost, are as much larger.
+TEST(Rounding, HasBoundsThatGrowWithTheCosine) {
+  const auto bound_at = [](double height) {
+    const double ring = std::sqrt(4.0 / 7);  // of the pupil's radius (trace/pattern.h)
+    const auto compiled = checked(scene::compile(system_of({surface_of(conic_shape(10, 0), 20, 1.5)}, 2 * height / ring)));
+    const study::SurfaceRounding surface = rounding_of(compiled.scene, {.rays = 7}).surfaces.at(1);
+    EXPECT_EQ(surface.bound_position_mm.count(), 7);
+    EXPECT_LE(surface.of_bound, 1);
+    return surface.bound_position_mm.worst();
+  };
+  const double steep = bound_at(10 * (1 - 1e-8)), gentle = bound_at(1);
+  EXPECT_GT(steep, 7071 * gentle);
+  EXPECT_LT(steep, 100 * 7071 * gentle);  // ten times the height, and its square in the terms
+}
+
 // An aperture's rim between the tracer's place and the exact one.
 TEST(Rounding, CountsRaysThatEndInOneWayOnly) {
   prescription::Model model = system_of({surface_of(conic_shape(30, -.5), 4, 1.5), surface_of(conic_shape(-40, 0), 30, 1)}, 9);
