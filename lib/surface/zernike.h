@@ -21,13 +21,13 @@
 // It ends when |g| is at its rounding, or with a step that moves (x, y) by less than rounding, so that p stays what it is, if
 // what g'' adds is below rounding too. What it finds is the hit if no other crossing can be on the way: the slope of the conic along the
 // line lies between those at both ends, for its sag is convex or concave, and
-//   |grad p| <= G = sum |C_j N_j| n_j^2 T_n(s)/(s r0)   for rho <= s, s >= 1                                        (5)
-// (|Z_j/N_j| <= 1 in the unit disc, T_n(s) outside, T_n Chebyshev's polynomial, and a polynomial's gradient is below n^2 of that in the disc), so
+//   |D^k p| <= sum |C_j N_j| T_n^(k)(1) T_n(s)/(s r0)^k   for rho <= s, s >= 1;   G, of the gradient, for k = 1           (5)
+// (|Z_j/N_j| <= 1 in the unit disc, T_n(s) outside, T_n Chebyshev's polynomial, and a polynomial's derivatives along lines in the disc are
+// below T_n^(k)(1) = prod_(i<k) (n^2 - i^2)/(2i + 1) of that), so
 //   d_z - L dz/dx - M dz/dy keeps its sign if at both ends that of the conic alone is beyond sqrt(L^2 + M^2) G.        (6)
-// Where it does not end at once, or (6) does not hold, first_crossing.h goes the way in steps that pass no crossing, the second
-// derivatives bounded like (5): sum |C_j N_j| n_j^2 (n_j - 1)^2 T_n(s)/(s r0)^2.
+// Where it does not end at once, or (6) does not hold, first_crossing.h goes the way in steps that pass neither crossing nor fold, by (5) for k = 2, 3.
 //
-// Source: Kellogg, Math. Z. 27, 55 (1928), for the gradient in (5).
+// Source: Harris, J. Math. Anal. Appl. 368, 374 (2010), for (5) (V. A. Markov's inequality in a disc).
 #pragma once
 
 #include <algorithm>
@@ -267,25 +267,22 @@ struct Zernike {
     return base.curvature + second * per_radius * per_radius;
   }
 
-  // (5), times r0 and the order for every derivative.
+  // (5)
   template <class T>
   T bound_within(const T& radius, int derivatives) const {
-    const T s = radius * T(per_radius) > T(1) ? T(radius * T(per_radius)) : T(1);
+    const T s = radius * T(per_radius) > T(1) ? T(radius * T(per_radius)) : T(1), per = T(per_radius) / s;
     T sum(0), chebyshev(1), before = s;  // T_n(s), T_(n-1)(s)
     for (int n = 0; n <= order; ++n) {
-      const double power = derivatives == 1 ? 1.0 * n * n : 1.0 * n * n * (n - 1) * (n - 1);
-      sum += T(sizes[n] * power) * chebyshev;
+      double of_chebyshev = 1;  // T_n^(k)(1)
+      for (int k = 0; k < derivatives; ++k) of_chebyshev *= (1.0 * n * n - 1.0 * k * k) / (2 * k + 1);
+      sum += T(sizes[n] * of_chebyshev) * chebyshev;
       const T next = T(2) * s * chebyshev - before;
       before = chebyshev, chebyshev = next;
     }
-    const T per = T(per_radius) / s;
-    return derivatives == 1 ? T(sum * per) : T(sum * per * per);
+    for (int k = 0; k < derivatives; ++k) sum *= per;
+    return sum;
   }
   // For first_crossing.h. Outside r0 the bound grows as T_n does: a step to 1 + n^(-3/2) of the radius keeps that below 10 for n up to 20.
-  template <class T>
-  T bend_within(const T& radius) const {
-    return bound_within(radius, 2);
-  }
   template <class T>
   T reach_from(const T& r) const {
     const T r0 = T(1) / T(per_radius), further = T(1) + T(1 / (order * std::sqrt(static_cast<double>(order))));
