@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lib/medium/formulas.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "lib/medium/cauchy.h"
+#include "lib/medium/cornu.h"
 #include "lib/medium/exotic.h"
 #include "lib/medium/gases.h"
 #include "lib/medium/herzberger.h"
+#include "lib/medium/navarro.h"
 #include "lib/medium/polynomial.h"
 #include "lib/medium/refractiveindex_info.h"
 #include "lib/medium/retro.h"
@@ -17,7 +21,7 @@ namespace sagitta::medium {
 namespace {
 
 constexpr Formula all_formulas[] = {
-    sellmeier, sellmeier_2, polynomial, refractiveindex_info, cauchy, gases, herzberger, retro, exotic,
+    sellmeier, sellmeier_2, polynomial, refractiveindex_info, cauchy, gases, herzberger, retro, exotic, cornu, navarro,
 };
 
 class FormulaDispersion : public Dispersion {
@@ -28,6 +32,7 @@ class FormulaDispersion : public Dispersion {
   double index(double wavelength_um) const override {
     return formula_.index(coefficients_, wavelength_um);
   }
+  std::string kind() const override { return title_of(formula_); }
 
  private:
   Formula formula_;
@@ -40,9 +45,20 @@ std::span<const Formula> formulas() { return all_formulas; }
 
 const Formula* find_formula(int number) {
   for (const Formula& formula : all_formulas) {
-    if (formula.number == number) return &formula;
+    if (formula.number == number && number > 0) return &formula;
   }
   return nullptr;
+}
+
+const Formula* find_formula(std::string_view number_or_name) {
+  for (const Formula& formula : all_formulas) {
+    if (number_or_name == (formula.number > 0 ? fmt::format("{}", formula.number) : std::string(formula.name))) return &formula;
+  }
+  return nullptr;
+}
+
+std::string title_of(const Formula& formula) {
+  return formula.number > 0 ? fmt::format("formula {} ({})", formula.number, formula.name) : fmt::format("formula {}", formula.name);
 }
 
 Medium from_formula(std::string name, const Formula& formula, std::vector<double> coefficients, double shortest_um,

@@ -4,6 +4,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "lib/medium/formula.h"
@@ -13,8 +14,12 @@ namespace sagitta::medium {
 
 std::span<const Formula> formulas();
 
-// Null where no formula has that number.
+// By number, 1 to 9; by what stands behind "formula" in a file: the number, or the name of one that has none. Null where there is none.
 const Formula* find_formula(int number);
+const Formula* find_formula(std::string_view number_or_name);
+
+// "formula 2 (Sellmeier-2)"; "formula Cornu".
+std::string title_of(const Formula& formula);
 
 // `coefficients` are as many as the formula accepts.
 Medium from_formula(std::string name, const Formula& formula, std::vector<double> coefficients, double shortest_um,

@@ -7,19 +7,20 @@
 #include <limits>
 #include <utility>
 
+#include "lib/medium/spectral_lines.h"
+
 namespace sagitta::medium {
 namespace {
 
 // n = nd + B (1/L^2 - 1/Ld^2): the constant at the d line is the index itself, so nd comes back to the last bit.
 class TwoTermCauchy : public Dispersion {
  public:
-  static constexpr double line_d_um = 0.5875618;
-
   TwoTermCauchy(double index_d, double slope_um2) : index_d_(index_d), slope_um2_(slope_um2) {}
 
   double index(double wavelength_um) const override {
-    return index_d_ + slope_um2_ * (1 / (wavelength_um * wavelength_um) - 1 / (line_d_um * line_d_um));
+    return index_d_ + slope_um2_ * (1 / (wavelength_um * wavelength_um) - 1 / (lines::d_um * lines::d_um));
   }
+  std::string kind() const override { return "from nd and Vd"; }
 
  private:
   double index_d_, slope_um2_;
@@ -30,6 +31,7 @@ class Constant : public Dispersion {
   explicit Constant(double index) : index_(index) {}
   double index(double) const override { return index_; }
   bool is_constant() const override { return true; }
+  std::string kind() const override { return "constant"; }
 
  private:
   double index_;
@@ -60,8 +62,7 @@ Medium constant(std::string name, double index) {
 Medium air() { return constant("air", 1); }
 
 Medium from_nd_vd(double nd, double vd) {
-  constexpr double line_f_um = 0.4861327, line_c_um = 0.6562725;
-  const double slope_um2 = (nd - 1) / vd / (1 / (line_f_um * line_f_um) - 1 / (line_c_um * line_c_um));
+  const double slope_um2 = (nd - 1) / vd / (1 / (lines::F_um * lines::F_um) - 1 / (lines::C_um * lines::C_um));
   return {fmt::format("nd {} vd {}", nd, vd), std::make_shared<TwoTermCauchy>(nd, slope_um2), least_wavelength_um, largest_wavelength_um};
 }
 

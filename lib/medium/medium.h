@@ -16,6 +16,8 @@ class Dispersion {
   virtual ~Dispersion() = default;
   virtual double index(double wavelength_um) const = 0;
   virtual bool is_constant() const { return false; }
+  virtual bool is_smooth() const { return true; }  // false: the slope jumps from one measured wavelength to the next
+  virtual std::string kind() const = 0;            // for people: "formula 2 (Sellmeier-2)", "table of 4"
 };
 
 // What may be an index: wider than any medium is, and narrow enough that a direction keeps its digits from one medium to the next.

@@ -21,6 +21,8 @@ class Table : public Dispersion {
     const double t = (wavelength_um - low.wavelength_um) / (after->wavelength_um - low.wavelength_um);
     return (1 - t) * low.index + t * after->index;  // (1)
   }
+  bool is_smooth() const override { return false; }
+  std::string kind() const override { return "table of " + std::to_string(samples_.size()); }
 
  private:
   std::vector<Sample> samples_;

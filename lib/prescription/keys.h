@@ -19,7 +19,7 @@ using KeyTable = std::span<const numerics::Key>;
 inline constexpr int prescription_version = 1;
 
 // Every surface has an index at every wavelength.
-inline constexpr int most_surfaces = 10'000, most_wavelengths = 1000;
+inline constexpr int most_surfaces = 10'000, most_wavelengths = 1000, most_catalogs = 16;
 
 // Those of medium.h, in nm.
 inline constexpr numerics::Range wavelengths_nm_range{1e-6, 1e12};
@@ -34,6 +34,9 @@ inline constexpr std::array system_keys{
                   .meaning = "another prescription, whose keys those of this file replace"},
     numerics::Key{.name = "name", .kind = numerics::ValueKind::text, .meaning = "name of the system"},
     numerics::Key{.name = "source", .kind = numerics::ValueKind::text, .meaning = "where the system is published"},
+    numerics::Key{.name = "catalogs",
+                  .kind = numerics::ValueKind::list,
+                  .meaning = "glass catalogues (AGF files) in which names of media are looked up, in a list"},
     numerics::Key{.name = "wavelengths_nm",
                   .kind = numerics::ValueKind::list,
                   .meaning = "the wavelengths, in a list",

@@ -4,17 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <set>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "lib/medium/formulas.h"
 #include "lib/medium/table.h"
-#include "lib/prescription/search_path.h"
 #include "lib/prescription/yaml_tree.h"
 
 namespace sagitta::prescription {
@@ -42,7 +39,7 @@ class MaterialFile {
   MaterialFile(std::string file, Findings& findings)
       : file_(std::move(file)), name_(fs::path(file_).stem().string()), findings_(findings), errors_before_(findings.error_count()) {}
 
-  std::optional<medium::Medium> read() {
+  std::optional<Material> read() {
     Findings of_text;
     const YamlNode::Pointer root = read_yaml(file_, of_text);
     for (const Finding& one : of_text.all()) {
@@ -62,7 +59,13 @@ class MaterialFile {
     }
     if (!source_ && error_count() == 0)
       findings_.error(data->place, "no refractive index n in DATA", "an entry of type formula N, tabulated n or tabulated nk gives one");
-    return error_count() == 0 ? std::move(medium_) : std::nullopt;
+    if (error_count() > 0) return std::nullopt;
+    std::optional<Material> material(std::in_place);
+    static_cast<medium::Medium&>(*material) = *std::move(medium_);
+    material->place.file = file_;
+    material->references = text_at(*root, "REFERENCES");
+    material->comments = text_at(*root, "COMMENTS");
+    return material;
   }
 
  private:
@@ -93,7 +96,7 @@ class MaterialFile {
     if (!is_formula && !(is_table && (kind[1] == "n" || kind[1] == "nk"))) {
       const std::string near = nearest_name(type->text, {"tabulated n", "tabulated nk", "tabulated k", "tabulated n2", "formula 1"});
       findings_.error(type->place, fmt::format("unknown type '{}'", excerpt(type->text)),
-                      near.empty() ? "legal: formula 1 to 9, tabulated n, nk, k, n2" : fmt::format("did you mean '{}'?", near));
+                      near.empty() ? "legal: formula " + formulas() + "; tabulated n, nk, k, n2" : fmt::format("did you mean '{}'?", near));
       return;
     }
     if (source_) {
@@ -108,14 +111,10 @@ class MaterialFile {
       read_table(entry, kind[1] == "nk" ? 3 : 2);
   }
 
-  void read_formula(const YamlNode& entry, const YamlNode& type, std::string_view number_text) {
-    int number = 0;
-    const auto [end, status] = std::from_chars(number_text.data(), number_text.data() + number_text.size(), number);
-    const bool is_number = status == std::errc{} && end == number_text.data() + number_text.size();
-    const medium::Formula* formula = is_number ? medium::find_formula(number) : nullptr;
+  void read_formula(const YamlNode& entry, const YamlNode& type, const std::string& number_or_name) {
+    const medium::Formula* formula = medium::find_formula(number_or_name);
     if (!formula) {
-      findings_.error(type.place, fmt::format("unknown dispersion formula '{}'", excerpt(std::string(number_text))),
-                      fmt::format("formulas are numbered 1 to {}", medium::formulas().size()));
+      findings_.error(type.place, fmt::format("unknown dispersion formula '{}'", excerpt(number_or_name)), "legal: formula " + formulas());
       return;
     }
     const YamlNode::Pointer range_text = text_of(entry, entry.find("range") ? "range" : "wavelength_range");
@@ -129,16 +128,33 @@ class MaterialFile {
                       range->size() == 2 && (*range)[0] > (*range)[1] ? "swap them" : "");
     if (coefficients && !formula->accepts(coefficients->size()))
       findings_.error(coefficients_text->place,
-                      fmt::format("formula {} ({}) takes {} coefficients, not {}", number, formula->name, formula->counts, coefficients->size()),
+                      fmt::format("{} takes {} coefficients, not {}", medium::title_of(*formula), formula->counts, coefficients->size()),
                       "C1 comes first, then every term in full");
     if (!coefficients || !range || error_count() > 0) return;
 
     medium_ = medium::from_formula(name_, *formula, *coefficients, (*range)[0], (*range)[1]);
     if (const std::optional<double> bad_um = medium::wavelength_without_index(*medium_))
       findings_.error(coefficients_text->place,
-                      fmt::format("formula {} ({}) gives no index from {} to {} at {:.6g} um, inside its range", number, formula->name, medium::least_index,
+                      fmt::format("{} gives no index from {} to {} at {:.6g} um, inside its range", medium::title_of(*formula), medium::least_index,
                                   medium::largest_index, *bad_um),
                       "check the coefficients, the number of the formula (1 squares C3, C5, ...; 2 does not) and the range");
+  }
+
+  // What a key says to people, if anything.
+  static std::string text_at(const YamlNode& root, std::string_view key) {
+    const YamlNode::Pointer node = root.find(key);
+    return node && node->kind == YamlNode::Kind::scalar ? node->text : std::string();
+  }
+
+  // "1 to 9, Cornu, ..."
+  static std::string formulas() {
+    std::string names;
+    int numbered = 0;
+    for (const medium::Formula& formula : medium::formulas()) {
+      if (formula.number > 0) ++numbered;
+      else names += ", " + std::string(formula.name);
+    }
+    return fmt::format("1 to {}", numbered) + names;
   }
 
   // The value of a key that must be a text; null, and an error, where it is not.
@@ -226,59 +242,10 @@ class MaterialFile {
   std::optional<medium::Medium> medium_;
 };
 
-bool is_plain_name(std::string_view name) {
-  const auto is_harmful = [](char c) { return c == '/' || c == '\\' || static_cast<unsigned char>(c) < 0x20; };
-  return !name.empty() && name.find("..") == std::string_view::npos && std::none_of(name.begin(), name.end(), is_harmful);
-}
-
-// The names of all media in the search path, in a fixed order.
-std::vector<std::string> known_names(const std::string& beside) {
-  std::set<std::string> names{"air"};
-  for (const std::string& folder : search_folders(beside)) {
-    std::error_code failure;
-    for (fs::directory_iterator file(fs::path(folder) / "materials", failure), end; !failure && file != end; file.increment(failure)) {
-      if (file->path().extension() == ".yml") names.insert(file->path().stem().string());
-    }
-  }
-  return {names.begin(), names.end()};
-}
-
-std::string nearest_medium(const std::string& name, const std::vector<std::string>& known) {
-  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
-  for (const std::string& candidate : known) {
-    if (std::ranges::equal(candidate, name, {}, lower, lower)) return candidate;
-  }
-  return nearest_name(name, known);
-}
-
 }  // namespace
 
-std::optional<medium::Medium> read_material(const std::string& file, Findings& findings) {
+std::optional<Material> read_material(const std::string& file, Findings& findings) {
   return MaterialFile(file, findings).read();
-}
-
-std::optional<medium::Medium> find_material(const std::string& name, const Place& named_at, Findings& findings) {
-  if (name == "air") return medium::air();
-  const std::string ways = "a medium is air, the name of a file materials/NAME.yml, {index: ...} or {nd: ..., vd: ...}";
-  if (!is_plain_name(name)) {
-    findings.error(named_at, fmt::format("'{}' is not the name of a medium", excerpt(name)), ways);
-    return std::nullopt;
-  }
-  const std::string beside = fs::path(named_at.file).parent_path().string();
-  const fs::path own = fs::path(beside) / (name + ".yml");
-  std::error_code failure;
-  const std::optional<std::string> file =
-      fs::is_regular_file(own, failure) ? std::optional(own.string()) : find_file("materials/" + name + ".yml", beside);
-  if (!file) {
-    const std::string near = nearest_medium(name, known_names(beside));
-    findings.error(named_at, fmt::format("unknown medium '{}'", excerpt(name)),
-                   near.empty() ? ways : fmt::format("did you mean '{}'?", excerpt(near)));
-    return std::nullopt;
-  }
-  const int errors_before = findings.error_count();
-  std::optional<medium::Medium> medium = read_material(*file, findings);
-  if (findings.error_count() > errors_before) findings.note(named_at, "named here");
-  return medium;
 }
 
 }  // namespace sagitta::prescription

@@ -5,7 +5,8 @@
 
 #include <filesystem>
 
-#include "lib/prescription/material_reader.h"
+#include "lib/prescription/material_search.h"
+#include "lib/prescription/search_path.h"
 #include "lib/prescription/value_reader.h"
 
 namespace sagitta::prescription {
@@ -15,6 +16,20 @@ MediumReader::Read MediumReader::read(const YamlNode* node) {
   if (node->kind == YamlNode::Kind::scalar && node->text == "mirror") return {.is_mirror = true};
   uses_.push_back({node->kind == YamlNode::Kind::mapping ? read_inline(*node) : read_name(*node), node->place});
   return {uses_.back().medium};
+}
+
+void MediumReader::read_catalogs(const YamlNode* node) {
+  if (!node) return;
+  if (node->kind != YamlNode::Kind::sequence || node->items.size() > most_catalogs)
+    return refuse(*node, "catalogs", fmt::format("a list of at most {} files", most_catalogs), findings_);
+  for (const YamlNode::Pointer& item : node->items) {
+    const auto name = read_text(*item, "each of catalogs", {}, findings_);
+    const auto file = name ? find_named_file(*name, item->place, findings_) : std::nullopt;
+    if (!file) continue;
+    const std::size_t told_before = findings_.all().size();
+    if (auto catalog = read_agf(*file, findings_)) catalogs_.push_back(*std::move(catalog));
+    if (findings_.all().size() > told_before) findings_.note(item->place, "named here");
+  }
 }
 
 medium::Medium MediumReader::read_name(const YamlNode& node) {
@@ -36,7 +51,7 @@ medium::Medium MediumReader::read_name(const YamlNode& node) {
                     fmt::format("see {}line {}", is_here ? "" : failed->second.file + ", ", failed->second.line));
     return medium::air();
   }
-  const auto found = find_material(node.text, node.place, findings_);
+  const auto found = find_material(node.text, node.place, findings_, catalogs_);
   if (found) return known_.emplace(key, *found).first->second;
   failed_.emplace(key, node.place);
   return medium::air();

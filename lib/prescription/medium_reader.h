@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lib/medium/medium.h"
+#include "lib/prescription/agf_reader.h"
 #include "lib/prescription/check.h"
 #include "lib/prescription/diagnostics.h"
 #include "lib/prescription/yaml_tree.h"
@@ -24,6 +25,9 @@ class MediumReader {
   // A name, {index: ...}, {nd: ..., vd: ...} or mirror; a null pointer is the default, air.
   Read read(const YamlNode* node);
 
+  // The catalogues in which names are looked up, from a list of files; a null pointer: none. To be called before read().
+  void read_catalogs(const YamlNode* node);
+
   // Every medium that was read, with its place.
   const std::vector<MediumUse>& uses() const { return uses_; }
 
@@ -32,6 +36,7 @@ class MediumReader {
   medium::Medium read_inline(const YamlNode& node);
 
   Findings& findings_;
+  std::vector<AgfCatalog> catalogs_;
   // By folder and name, since a name means a file beside the one in which it stands.
   std::map<std::string, medium::Medium> known_;  // a file is read once,
   std::map<std::string, Place> failed_;          // and faults in it are told once, for the use there

@@ -104,6 +104,7 @@ Model read_model(const YamlNode& root, const std::vector<Document>& documents, F
   model.source = section.text("source").value_or("");
   if (const YamlNode* node = section.find("wavelengths_nm")) model.wavelengths_nm = read_wavelengths(*node, findings);
   model.primary_nm = section.number("primary_nm");
+  media.read_catalogs(section.find("catalogs"));
   if (const YamlNode* node = section.find("aperture")) model.aperture = read_aperture(*node, findings);
   if (const YamlNode* node = section.find("fields")) model.fields = read_fields(*node, findings);
   if (const YamlNode* node = section.find("object")) model.object = read_object(*node, media, findings);

@@ -14,8 +14,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 #include <optional>
 #include <sstream>
@@ -23,6 +21,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "lib/prescription/text_file.h"
 #include "lib/prescription/utf8.h"
 
 namespace sagitta::prescription {
@@ -192,37 +191,6 @@ std::string hint_of(const YAML::Exception& fault) {
   return {};
 }
 
-// The text of the file, at most one byte more than is allowed.
-std::optional<std::string> read_text(const std::string& file, Findings& findings) {
-  std::error_code failure;
-  const auto status = std::filesystem::status(file, failure);
-  if (!std::filesystem::exists(status) || std::filesystem::is_directory(status)) {
-    findings.error({file},
-                   std::filesystem::exists(status) ? "cannot be read: it is a folder" : "there is no such file");
-    return std::nullopt;
-  }
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) {
-    findings.error({file}, "cannot be read");
-    return std::nullopt;
-  }
-  // In pieces: a buffer for the largest file takes longer to set up than a usual one to read.
-  constexpr std::size_t piece = 1 << 14;
-  std::string text;
-  while (stream && text.size() <= most_bytes) {
-    const std::size_t before = text.size(), wanted = std::min(piece, most_bytes + 1 - before);
-    text.resize(before + wanted);
-    stream.read(text.data() + before, static_cast<std::streamsize>(wanted));
-    text.resize(before + static_cast<std::size_t>(stream.gcount()));
-  }
-  if (text.size() > most_bytes) {
-    findings.error({file}, "larger than " + std::to_string(most_bytes >> 20) + " MiB, which no such file needs",
-                   "points belong into a file of their own");
-    return std::nullopt;
-  }
-  return text;
-}
-
 // YAML admits no control characters but tab and the line ends; yaml-cpp would stop at some of them in silence.
 bool is_plain_text(const std::string& file, const std::string& text, Findings& findings) {
   int line = 1;
@@ -254,7 +222,7 @@ YamlNode::Pointer YamlNode::find(std::string_view key) const {
 }
 
 YamlNode::Pointer read_yaml(const std::string& file, Findings& findings) {
-  std::optional<std::string> text = read_text(file, findings);
+  std::optional<std::string> text = read_file(file, most_bytes, "points belong into a file of their own", findings);
   if (!text || !is_plain_text(file, *text, findings)) return nullptr;
   const auto opens_node = [](char c) { return c == '[' || c == '{'; };
   if (static_cast<std::size_t>(std::count_if(text->begin(), text->end(), opens_node)) > most_nodes) {

@@ -14,6 +14,7 @@
 #include <string_view>
 
 #include "lib/analysis/job.h"
+#include "lib/prescription/agf_reader.h"
 #include "lib/prescription/cloud_reader.h"
 #include "lib/prescription/material_reader.h"
 #include "lib/prescription/reader.h"
@@ -105,16 +106,35 @@ inline std::string fuzz_study(const Folder& folder, std::string_view bytes) {
   return study.field < study.system.fields.points.size() ? "" : "no such field";
 }
 
+inline std::string wrong_with(const medium::Medium& medium) {
+  for (int i = 0; i <= 16; ++i) {
+    const double share = i / 16.0, um = share * medium.longest_um + (1 - share) * medium.shortest_um;
+    const double index = medium.index(um);
+    const bool is_pole = std::isnan(index) && i > 0 && i < 16;  // one that is narrower than the reader looks
+    if (!is_pole && !(index >= medium::least_index && index <= medium::largest_index)) return fmt::format("the index {} at {} um", index, um);
+  }
+  return {};
+}
+
 inline std::string fuzz_material(const Folder& folder, std::string_view bytes) {
   prescription::Findings findings;
   const auto medium = prescription::read_material(folder.write("material.yml", std::string(bytes)), findings);
   const std::string wrong = wrong_with(findings, medium.has_value());
-  if (!wrong.empty() || !medium) return wrong;
-  for (int i = 0; i <= 16; ++i) {
-    const double share = i / 16.0, um = share * medium->longest_um + (1 - share) * medium->shortest_um;
-    const double index = medium->index(um);
-    const bool is_pole = std::isnan(index) && i > 0 && i < 16;  // one that is narrower than the reader looks
-    if (!is_pole && !(index >= medium::least_index && index <= medium::largest_index)) return fmt::format("the index {} at {} um", index, um);
+  return wrong.empty() && medium ? wrong_with(*medium) : wrong;
+}
+
+inline std::string fuzz_catalog(const Folder& folder, std::string_view bytes) {
+  prescription::Findings findings;
+  const auto catalog = prescription::read_agf(folder.write("catalog.agf", std::string(bytes)), findings);
+  const std::string wrong = wrong_with(findings, catalog.has_value());
+  if (!wrong.empty() || !catalog) return wrong;
+  for (std::size_t i = 0; i < std::min<std::size_t>(catalog->glasses.size(), 20); ++i) {
+    prescription::Findings of_glass;
+    const prescription::AgfGlass& glass = catalog->glasses[i];
+    const auto material = prescription::read_glass(*catalog, glass, of_glass);
+    if (const std::string wrong_glass = wrong_with(of_glass, material.has_value()); !wrong_glass.empty()) return wrong_glass;
+    if (catalog->find(glass.name) != &glass) return "a glass that is not found by its name";
+    if (const std::string wrong_index = material ? wrong_with(*material) : ""; !wrong_index.empty()) return wrong_index;
   }
   return {};
 }
@@ -211,7 +231,7 @@ struct Target {
   std::string_view name;
   std::string (*run)(const Folder& folder, std::string_view bytes);
 };
-inline constexpr std::array targets{Target{"prescription", fuzz_prescription}, Target{"study", fuzz_study}, Target{"material", fuzz_material},
+inline constexpr std::array targets{Target{"prescription", fuzz_prescription}, Target{"study", fuzz_study}, Target{"material", fuzz_material}, Target{"catalog", fuzz_catalog},
                                     Target{"xyz", fuzz_cloud<xyz>}, Target{"cso", fuzz_cloud<cso>}, Target{"polar", fuzz_cloud<polar>},
                                     Target{"ply", fuzz_cloud<ply>}, Target{"compile", fuzz_compile}};
 

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "lib/prescription/material_search.h"
+
 namespace sagitta::prescription {
 namespace {
 
