@@ -65,6 +65,15 @@ struct CheckOptions {
 };
 int check_command(const CheckOptions& options);
 
+struct MaterialsOptions {
+  std::vector<std::string> names;     // of media, or files NAME.yml; empty: all that are known are listed
+  std::vector<std::string> catalogs;  // AGF files
+  std::vector<double> wavelengths_nm;  // empty: the lines of the spectrum
+  std::string picture;                // FILE.png or FILE.svg; "": none
+  bool json = false;
+};
+int materials_command(const MaterialsOptions& options);
+
 struct StudyOptions {
   std::string study;  // a name of systems/studies/, or a file
   std::string system;  // a prescription in its place: how its answers settle

@@ -141,6 +141,18 @@ void add_check(CLI::App& app, int& status) {
   command->callback([&status] { status = check_command(options); });
 }
 
+void add_materials(CLI::App& app, int& status) {
+  static MaterialsOptions options;
+  CLI::App* command = app.add_subcommand("materials", "List the media that a prescription can name; evaluate and plot them");
+  command->add_option("NAME", options.names, "media, or files in refractiveindex.info's format (.yml); none: all are listed");
+  command->add_option("--at", options.wavelengths_nm, "wavelengths in nm, separated by commas (default: lines of the spectrum in the medium's range)")
+      ->delimiter(',')->check(from_to(1e-6, 1e12));
+  command->add_option("--catalog", options.catalogs, "glass catalogue (AGF) in which names are looked up as well; may be repeated")->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command->add_option("-o,--output", options.picture, "picture of index against wavelength, .png or .svg");
+  command->add_flag("--json", options.json, "print JSON in place of the tables");
+  command->callback([&status] { status = materials_command(options); });
+}
+
 void add_convert(CLI::App& app, int& status) {
   static ConvertOptions options;
   CLI::App* command = app.add_subcommand("convert", "Write points in the compact form (binary PLY), which reads at the speed of the disk");
@@ -228,6 +240,7 @@ int main(int argc, char** argv) {
   add_compare(app, status);
   add_rays(app, status);
   add_check(app, status);
+  add_materials(app, status);
   add_fit(app, status);
   add_convert(app, status);
   add_study(app, status);

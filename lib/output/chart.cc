@@ -23,9 +23,6 @@ constexpr double legend_gap = 20, legend_text_width = 210, sample_width = 32, sa
 constexpr double series_width = 1.1, fit_width = 1.6, reference_width = 1.2;
 constexpr Rgb8 grid_ink{228, 228, 228};
 
-bool can_be_shown(double value) { return value >= 1e-300 && value <= 1e300; }
-bool can_be_shown(const ChartPoint& point) { return can_be_shown(point.x) && can_be_shown(point.y); }
-
 // The ends of a fitted line.
 std::vector<ChartPoint> ends(const PowerLaw& law) {
   std::vector<ChartPoint> result;
@@ -33,25 +30,34 @@ std::vector<ChartPoint> ends(const PowerLaw& law) {
   return result;
 }
 
-class LogAxis {
+class Axis {
  public:
+  explicit Axis(AxisScale scale) : is_log_(scale == AxisScale::logarithmic) {}
+
+  bool has_place_for(double value) const { return is_log_ ? value >= 1e-300 && value <= 1e300 : std::abs(value) <= 1e300; }
   void include(double value) {
-    low_ = std::min(low_, std::log10(value));
-    high_ = std::max(high_, std::log10(value));
+    low_ = std::min(low_, scaled(value));
+    high_ = std::max(high_, scaled(value));
   }
-  // When all is included: some room at the ends, and a decade at least.
+  // When all is included: some room at the ends, and a decade at least; of a linear axis that has one value, some room around it.
   void lay_out() {
     if (!(low_ <= high_)) return;
-    const double middle = (low_ + high_) / 2, half = std::max(0.5, 0.535 * (high_ - low_));
+    const double middle = (low_ + high_) / 2;
+    double half = 0.535 * (high_ - low_);
+    if (is_log_) half = std::max(0.5, half);
+    else if (!(half > 1e-9 * std::abs(middle))) half = middle != 0 ? 0.05 * std::abs(middle) : 1;
     low_ = middle - half;
     high_ = middle + half;
-    ticks = chart_ticks(std::pow(10.0, low_), std::pow(10.0, high_), most_ticks);
+    ticks = is_log_ ? chart_ticks(std::pow(10.0, low_), std::pow(10.0, high_), most_ticks) : ChartTicks{linear_ticks(low_, high_, most_ticks), {}};
   }
-  double fraction(double value) const { return (std::log10(value) - low_) / (high_ - low_); }
+  double fraction(double value) const { return (scaled(value) - low_) / (high_ - low_); }
 
   ChartTicks ticks;
 
  private:
+  double scaled(double value) const { return is_log_ ? std::log10(value) : value; }
+
+  bool is_log_;
   double low_ = std::numeric_limits<double>::infinity(), high_ = -std::numeric_limits<double>::infinity();
 };
 
@@ -70,6 +76,7 @@ class Sheet {
     std::vector<std::string> lines;
   };
 
+  bool can_be_shown(const ChartPoint& point) const { return x_.has_place_for(point.x) && y_.has_place_for(point.y); }
   void take_in(const ChartPoint& point);
   void take_in_series(std::size_t i);
   void lay_out();
@@ -89,7 +96,7 @@ class Sheet {
   std::vector<ReferenceLine> references_;
   std::size_t points_left_out_ = 0, lines_left_out_ = 0;
   bool has_data_ = false;
-  LogAxis x_, y_;
+  Axis x_, y_;
   Box plot_;
   std::vector<Entry> legend_;
   std::vector<std::string> title_, footer_;
@@ -98,15 +105,16 @@ class Sheet {
   std::vector<Point> drawn_;  // where in the plot something is, a few pixels apart
 };
 
-Sheet::Sheet(const Chart& chart) : chart_(chart) {
+Sheet::Sheet(const Chart& chart) : chart_(chart), x_(chart.x_scale), y_(chart.y_scale) {
   for (std::size_t i = 0; i < std::min(chart.series.size(), most_series); ++i) take_in_series(i);
   for (const ReferenceLine& line : chart.references) {
-    if (!can_be_shown(line.at)) {
+    Axis& axis = line.is_vertical ? x_ : y_;
+    if (!axis.has_place_for(line.at)) {
       ++lines_left_out_;
       continue;
     }
     references_.push_back(line);
-    (line.is_vertical ? x_ : y_).include(line.at);
+    axis.include(line.at);
   }
   lay_out();
 }
@@ -129,6 +137,11 @@ void Sheet::take_in_series(std::size_t i) {
       ++shown;
     }
   points_left_out_ += series.points.size() - shown;
+  for (const ChartPoint& point : series.curve)
+    if (can_be_shown(point)) {
+      take_in(point);
+      ++shown;
+    }
   has_data_ = has_data_ || shown > 0;
   add_entry(false, series.name + (shown > 0 ? "" : " (no point)"));
   if (!series.fit) return;
@@ -148,8 +161,9 @@ std::vector<std::string> Sheet::footer_texts() const {
     const auto counted = [](std::size_t count, const char* what) { return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s"); };
     std::string what = points_left_out_ > 0 ? counted(points_left_out_, "point") : "";
     if (lines_left_out_ > 0) what += (what.empty() ? "" : " and ") + counted(lines_left_out_, "line");
-    texts.push_back(fmt::format("{} {} not shown: a logarithmic axis has no place for 0, negative or missing values.", what,
-                                points_left_out_ + lines_left_out_ == 1 ? "is" : "are"));
+    const bool any_is_log = chart_.x_scale == AxisScale::logarithmic || chart_.y_scale == AxisScale::logarithmic;
+    texts.push_back(fmt::format("{} {} not shown: {}.", what, points_left_out_ + lines_left_out_ == 1 ? "is" : "are",
+                                any_is_log ? "a logarithmic axis has no place for 0, negative or missing values" : "no axis has a place for missing values"));
   }
   if (chart_.series.size() > most_series) texts.push_back(fmt::format("{} of {} series are shown.", most_series, chart_.series.size()));
   return texts;
@@ -235,7 +249,8 @@ void Sheet::draw_series(Canvas& canvas) {
   for (std::size_t i = 0; i < count; ++i) {
     if (!chart_.series[i].is_joined) continue;
     std::vector<Point> run;
-    for (const ChartPoint& point : chart_.series[i].points) {
+    const ChartSeries& series = chart_.series[i];
+    for (const ChartPoint& point : series.curve.empty() ? series.points : series.curve) {
       if (can_be_shown(point)) {
         run.push_back(place(point));
         continue;

@@ -25,24 +25,6 @@ std::string shown(const std::vector<double>& wavelengths_nm) {
   return text + " nm";
 }
 
-void check_medium(const MediumUse& use, const std::vector<double>& wavelengths_nm, Findings& findings) {
-  std::vector<double> outside, without_index;
-  for (const double wavelength_nm : wavelengths_nm) {
-    const double wavelength_um = wavelength_nm / 1000;
-    if (!use.medium.covers(wavelength_um))
-      outside.push_back(wavelength_nm);
-    else if (!(use.medium.index(wavelength_um) > 0))
-      without_index.push_back(wavelength_nm);
-  }
-  // Ranges are shown with 9 digits: 0.31 um times 1000 need not be 310.
-  if (!outside.empty())
-    findings.error(use.place, fmt::format("{} is valid from {:.9g} to {:.9g} nm, not at {}", use.medium.name,
-                                          use.medium.shortest_um * 1000, use.medium.longest_um * 1000, shown(outside)));
-  if (!without_index.empty())
-    findings.error(use.place,
-                   fmt::format("{} has no index from {} to {} at {}", use.medium.name, medium::least_index, medium::largest_index, shown(without_index)));
-}
-
 void check_aperture(const Model& model, Findings& findings) {
   const Aperture& aperture = model.aperture;
   const double distance_mm = model.object.distance_mm;
@@ -62,6 +44,24 @@ void check_aperture(const Model& model, Findings& findings) {
 }
 
 }  // namespace
+
+void check_medium(const MediumUse& use, const std::vector<double>& wavelengths_nm, Findings& findings) {
+  std::vector<double> outside, without_index;
+  for (const double wavelength_nm : wavelengths_nm) {
+    const double wavelength_um = wavelength_nm / 1000;
+    if (!use.medium.covers(wavelength_um))
+      outside.push_back(wavelength_nm);
+    else if (!(use.medium.index(wavelength_um) > 0))
+      without_index.push_back(wavelength_nm);
+  }
+  // Ranges are shown with 9 digits: 0.31 um times 1000 need not be 310.
+  if (!outside.empty())
+    findings.error(use.place, fmt::format("{} is valid from {:.9g} to {:.9g} nm, not at {}", use.medium.name,
+                                          use.medium.shortest_um * 1000, use.medium.longest_um * 1000, shown(outside)));
+  if (!without_index.empty())
+    findings.error(use.place,
+                   fmt::format("{} has no index from {} to {} at {}", use.medium.name, medium::least_index, medium::largest_index, shown(without_index)));
+}
 
 void check_model(const Model& model, const std::vector<MediumUse>& media, Findings& findings) {
   const std::vector<double> wavelengths_nm = used_wavelengths_nm(model);

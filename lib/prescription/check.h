@@ -16,6 +16,9 @@ struct MediumUse {
   Place place;
 };
 
+// Each wavelength lies in the medium's range and has an index there; an error at the place of use that names those that do not.
+void check_medium(const MediumUse& use, const std::vector<double>& wavelengths_nm, Findings& findings);
+
 // Every wavelength lies in the range of every medium and has a positive index there; image_f_number has an infinite
 // object, object_na and object_heights_mm a finite one; object_na is less than the index of the object's medium. An
 // object distance that could not be read is NaN: nothing is said about it again.

@@ -2,6 +2,7 @@
 // Catalogues written here, glass by glass against the formulas of OpticStudio's manual in 50 digits.
 #include "lib/prescription/agf_reader.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

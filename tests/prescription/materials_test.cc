@@ -32,7 +32,8 @@ medium::Medium shipped(const std::string& name) {
   const auto medium = find_material(name, {SAGITTA_SOURCE_DIR "/systems/test.yaml", 1, 1}, findings);
   EXPECT_TRUE(medium.has_value()) << name << '\n' << said(findings);
   EXPECT_TRUE(findings.all().empty()) << said(findings);
-  return medium.value_or(medium::air());
+  if (medium) return *medium;
+  return medium::air();
 }
 
 // The folder of data that is not part of the project; empty where it is not there.
