@@ -268,7 +268,7 @@ TEST(Catalogs, AreSearchedBehindTheFolderOfThePrescriptionAndBeforeTheShippedMed
   EXPECT_EQ(read_lens(folder, "Y", both).index, 1.625);
   EXPECT_EQ(read_lens(folder, "Y", both).findings, "");
   EXPECT_EQ(read_lens(folder, "X", both).index, 1.25);
-  EXPECT_EQ(read_lens(folder, "X", both).findings, "system.yaml:6:71: note: X is taken from a.agf, line 1; b.agf, line 1 has another index, by up to 0.25\n");
+  EXPECT_EQ(read_lens(folder, "X", both).findings, "system.yaml:6:67: note: X is taken from a.agf, line 1; b.agf, line 1 has another index, by up to 0.25\n");
   EXPECT_EQ(read_lens(folder, "X", "catalogs: [b.agf, a.agf]\n").index, 1.5);
   EXPECT_EQ(read_lens(folder, "N-BK7", both).index, 1.75);
   EXPECT_THAT(read_lens(folder, "N-BK7", both).findings, HasSubstr("N-BK7 is taken from a.agf, line 4; N-BK7.yml has another index, by up to 0.24"));
@@ -298,8 +298,8 @@ TEST(Catalogs, FaultsNameThePrescription) {
   folder.write("a.agf", "NM Glass-1 99\nCD 1.25\nLD 0.4 1\n");
   folder.write("empty.agf", "");
   EXPECT_EQ(read_lens(folder, "Glass-1", "catalogs: [a.agf]\n").findings,
-            "a.agf:1:12: error: glass 'Glass-1': unknown dispersion formula '99'\n  hint: formulas are numbered 1 to 13\nsystem.yaml:6:71: note: named here\n");
-  EXPECT_EQ(read_lens(folder, "glass-1", "catalogs: [a.agf]\n").findings, "system.yaml:6:71: error: unknown medium 'glass-1'\n  hint: did you mean 'Glass-1'?\n");
+            "a.agf:1:12: error: glass 'Glass-1': unknown dispersion formula '99'\n  hint: formulas are numbered 1 to 13\nsystem.yaml:6:67: note: named here\n");
+  EXPECT_EQ(read_lens(folder, "glass-1", "catalogs: [a.agf]\n").findings, "system.yaml:6:67: error: unknown medium 'glass-1'\n  hint: did you mean 'Glass-1'?\n");
   EXPECT_EQ(read_lens(folder, "air", "catalogs: [a.agf, empty.agf]\n").findings,
             "empty.agf:1:1: error: no glass: not a catalogue in the AGF format\n  hint: a glass begins with a line `NM NAME FORMULA ...`\nsystem.yaml:2:19: note: named here\n");
   EXPECT_THAT(read_lens(folder, "air", "catalogs: [missing.agf]\n").findings, HasSubstr("system.yaml:2:12: error: there is no file 'missing.agf'\n"));
