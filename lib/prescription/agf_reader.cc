@@ -126,7 +126,11 @@ class CatalogFile {
     if (line.letters == "CC" && catalog_.glasses.empty() && catalog_.comment.empty()) catalog_.comment = trimmed(line.rest.text);
     if (!glass_) return;
     AgfLine* const place = line.letters == "CD" ? &glass_->coefficients : line.letters == "LD" ? &glass_->range : line.letters == "GC" ? &glass_->comment : nullptr;
-    if (place && place->number == 0) *place = std::move(line.rest);
+    if (!place) return;
+    if (place->number == 0)
+      *place = std::move(line.rest);
+    else if (place->repeated == 0)
+      place->repeated = line.rest.number;
   }
 
   // What follows a name that is repeated belongs to no glass.
@@ -159,6 +163,8 @@ class GlassReader {
     const int number = read_formula_number();
     const Coefficients c = read_coefficients();
     const std::array<double, 2> range = read_range();
+    refuse_second(glass_.coefficients, "coefficients");
+    refuse_second(glass_.range, "range");
     if (findings_.error_count() > errors_before_) return std::nullopt;
     const AgfFormula& formula = formulas[number - 1];
     const medium::Formula& same = *medium::find_formula(formula.number);
@@ -178,6 +184,11 @@ class GlassReader {
   Place place(const AgfLine& line) const { return {catalog_.file, line.number, 1}; }
   void error(const AgfLine& line, std::string what, std::string hint = {}) {
     findings_.error(place(line), fmt::format("glass '{}': {}", excerpt(glass_.name), what), std::move(hint));
+  }
+
+  void refuse_second(const AgfLine& line, const char* what) {
+    if (line.repeated > 0)
+      findings_.error({catalog_.file, line.repeated, 1}, fmt::format("glass '{}': a second line of {}", excerpt(glass_.name), what), fmt::format("the first is line {}: one of them must go", line.number));
   }
 
   std::optional<double> number_of(const Word& word, const AgfLine& line) {

@@ -46,7 +46,8 @@ namespace sagitta::prescription {
 struct AgfLine {
   std::string text;
   int number = 0;
-  int column = 0;  // of the first byte of the text, counted in UTF-8
+  int column = 0;    // of the first byte of the text, counted in UTF-8
+  int repeated = 0;  // number of the next line of its kind in the same glass; 0: there is none
 };
 
 struct AgfGlass {
@@ -69,7 +70,7 @@ inline constexpr std::size_t most_agf_bytes = std::size_t{16} << 20, most_agf_gl
 std::optional<AgfCatalog> read_agf(const std::string& file, Findings& findings);
 
 // The glass as a medium. None, with errors at its lines, where the formula is unknown, a number is none, all coefficients are zero,
-// the range is missing or not one, or the index does not exist in it.
+// the range is missing or not one, coefficients or range are given twice, or the index does not exist in the range.
 std::optional<Material> read_glass(const AgfCatalog& catalog, const AgfGlass& glass, Findings& findings);
 
 }  // namespace sagitta::prescription

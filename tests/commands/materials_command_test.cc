@@ -51,14 +51,14 @@ TEST(MaterialsCommand, lists_every_file_that_is_shipped) {
   EXPECT_EQ(text.status, 0);
   EXPECT_EQ(text.err, "");
   EXPECT_EQ(static_cast<std::size_t>(std::count(text.out.begin(), text.out.end(), '\n')), files.size() + 3);
-  EXPECT_THAT(text.out, HasSubstr("\nN-BK7                           1.51680  64.17   300 to 2500  materials  formula 2 (Sellmeier-2)"));
+  EXPECT_THAT(text.out, HasSubstr("\nN-BK7                        1.51680  64.17    300 to 2500  materials  formula 2 (Sellmeier-2)"));
 }
 
 TEST(MaterialsCommand, gives_the_values_at_the_lines_of_the_range) {
   const json glass = read("N-BK7").at(0);
   EXPECT_EQ(glass.at("values").size(), 13U);
-  for (const json& value : glass.at("values"))
-    if (value.at("line") == "d") EXPECT_NEAR(value.at("index").get<double>(), 1.5168, 1e-6);
+  EXPECT_EQ(glass.at("values")[6].at("line"), "d");
+  EXPECT_NEAR(glass.at("values")[6].at("index").get<double>(), 1.5168, 1e-6);
   const json table = read("navarro-lens").at(0);
   std::vector<std::string> lines;
   for (const json& value : table.at("values")) {

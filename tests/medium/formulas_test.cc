@@ -106,8 +106,10 @@ TEST(Formulas, AreNumberedFromOneToNineAndThenHaveNames) {
   int number = 0;
   std::vector<std::string> named;
   for (const Formula& formula : formulas()) {
-    if (formula.number > 0) EXPECT_EQ(formula.number, ++number) << formula.name;
-    else named.emplace_back(formula.name);
+    if (formula.number == 0)
+      named.emplace_back(formula.name);
+    else
+      EXPECT_EQ(formula.number, ++number) << formula.name;
   }
   EXPECT_EQ(number, 9);
   EXPECT_EQ(named, (std::vector<std::string>{"Cornu", "Navarro"}));

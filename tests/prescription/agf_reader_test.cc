@@ -204,7 +204,8 @@ TEST(AgfReader, AFaultIsToldWhereItStandsAndHindersNoOtherGlass) {
       "NM short 5\nCD 1.5\nLD 0.4\n"
       "NM turned 5\nCD 1.5\nLD 1 0.4\n"
       "NM nowhere 5\nCD 1.5\nLD 0 0\n"
-      "NM pole 2\nCD 1 0.25\nLD 0.4 1\n");
+      "NM pole 2\nCD 1 0.25\nLD 0.4 1\n"
+      "NM twice 5\nGC one\nGC two\nCD 1.5\nLD 0.4 1\nCD 1.6\nCD 1.7\nLD 0.4 2\n");
   EXPECT_TRUE(glass_of(catalog, "good"));
   const std::vector<std::pair<std::string, std::string>> expected = {
       {"unnumbered", "glasses.agf:4:1: error: glass 'unnumbered': no number of a dispersion formula\n  hint: NM NAME FORMULA ..., 1 to 13\n"},
@@ -220,7 +221,9 @@ TEST(AgfReader, AFaultIsToldWhereItStandsAndHindersNoOtherGlass) {
       {"turned", "glasses.agf:34:1: error: glass 'turned': the range 1 to 0.4 is not two wavelengths in um, 1e-09 <= shortest <= longest <= 1000000000\n  hint: swap them\n"},
       {"nowhere", "glasses.agf:37:1: error: glass 'nowhere': the range 0 to 0 is not two wavelengths in um, 1e-09 <= shortest <= longest <= 1000000000\n"},
       {"pole", "glasses.agf:39:1: error: glass 'pole': formula 2 (Sellmeier 1) gives no index from 0.001 to 1000 at 0.4 um, inside its range\n"
-               "  hint: check CD, LD and the number of the formula in NM\n"}};
+               "  hint: check CD, LD and the number of the formula in NM\n"},
+      {"twice", "glasses.agf:46:1: error: glass 'twice': a second line of coefficients\n  hint: the first is line 44: one of them must go\n"
+                "glasses.agf:48:1: error: glass 'twice': a second line of range\n  hint: the first is line 45: one of them must go\n"}};
   EXPECT_EQ(catalog.glasses.size(), expected.size() + 1);
   for (const auto& [name, findings] : expected) EXPECT_FALSE(glass_of(catalog, name, findings)) << name;
 }
