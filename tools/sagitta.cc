@@ -146,8 +146,8 @@ void add_materials(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("materials", "List the media that a prescription can name; evaluate and plot them");
   command->add_option("NAME", options.names, "media, or files in refractiveindex.info's format (.yml); none: all are listed");
   command->add_option("--at", options.wavelengths_nm, "wavelengths in nm, separated by commas (default: lines of the spectrum in the medium's range)")
-      ->delimiter(',')->check(from_to(1e-6, 1e12));
-  command->add_option("--catalog", options.catalogs, "glass catalogue (AGF) in which names are looked up as well; may be repeated")->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+      ->delimiter(',')->allow_extra_args(false)->check(from_to(1e-6, 1e12));
+  command->add_option("--catalog", options.catalogs, "glass catalogue (AGF) in which names are looked up as well; may be repeated")->allow_extra_args(false);
   command->add_option("-o,--output", options.picture, "picture of index against wavelength, .png or .svg");
   command->add_flag("--json", options.json, "print JSON in place of the tables");
   command->callback([&status] { status = materials_command(options); });

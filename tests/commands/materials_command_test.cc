@@ -80,6 +80,7 @@ TEST(MaterialsCommand, evaluates_at_given_wavelengths) {
   EXPECT_TRUE(values[0].at("line").is_null());
   EXPECT_NEAR(values[0].at("index").get<double>(), 1.5150892, 0.5e-7);  // E20
   EXPECT_NEAR(values[1].at("index").get<double>(), 1.5168000, 0.5e-7);
+  EXPECT_EQ(read("--at 600,632.8 --at 500 N-BK7").at(0).at("values").size(), 3U);
   EXPECT_THAT(run_program("materials N-BK7 --at 632.8").out, HasSubstr("632.8  1.5150892  "));
 }
 
@@ -107,6 +108,7 @@ TEST(MaterialsCommand, takes_catalogues_and_files) {
   EXPECT_EQ(glass.at("comments"), "a comment");
   EXPECT_EQ(glass.at("references"), "my.agf, AGF formula 2, Sellmeier 1; My glasses");
   EXPECT_EQ(read("N-BK7 " + with).at(0).at("nd"), 1.5);
+  EXPECT_EQ(read(with + " --catalog " + folder.file("other.agf", "NM H 5\nCD 1.75\nLD 0.4 1\n") + " H").at(0).at("nd"), 1.75);
   const Outcome list = run_program("materials " + with);
   EXPECT_EQ(list.status, 0);
   EXPECT_THAT(list.out, HasSubstr("\nG1 "));
