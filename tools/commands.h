@@ -97,4 +97,6 @@ struct FitOptions {
 };
 int fit_command(const FitOptions& options);
 
+int schema_command();
+
 }  // namespace sagitta::tools

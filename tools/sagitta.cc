@@ -210,6 +210,11 @@ void add_fit(CLI::App& app, int& status) {
   command->callback([&status] { status = fit_command(options); });
 }
 
+void add_schema(CLI::App& app, int& status) {
+  app.add_subcommand("schema", "Print the JSON Schema of a prescription, for editors that complete and check while you type")
+      ->callback([&status] { status = schema_command(); });
+}
+
 // The same few megabytes are wanted again and again, by blocks of rays, maps and pictures. Pages that were given back to the system
 // would have to be cleared anew, at a microsecond each.
 void keep_freed_memory() {
@@ -257,6 +262,7 @@ int main(int argc, char** argv) {
   add_fit(app, status);
   add_convert(app, status);
   add_study(app, status);
+  add_schema(app, status);
   try {
     status = exit_status(app, argc, argv, status);
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw std::system_error(errno, std::generic_category());
