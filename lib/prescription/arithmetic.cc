@@ -106,7 +106,7 @@ class Computation {
 void refuse_unused(const YamlNode* declared, const std::string& file, const Settings& settings, const Computation& computation, Findings& findings) {
   if (!declared || computation.has_faults()) return;  // a fault may have kept one from being used
   for (const YamlNode::Entry& entry : declared->entries)
-    if (entry.key_place.file == file && !computation.uses(entry.key))
+    if (entry.key_place.file == file && is_parameter_name(entry.key) && !computation.uses(entry.key))
       findings.error(entry.key_place, fmt::format("nothing uses the parameter '{}'", excerpt(entry.key)),
                      fmt::format("use it in a value, as in = 2 * {}, or leave it out", excerpt(entry.key)));
   for (const ParameterValue& setting : settings) {

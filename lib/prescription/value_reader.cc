@@ -56,6 +56,7 @@ std::string number_hint(const YamlNode& node) {
   if (node.kind != YamlNode::Kind::scalar) return {};
   const std::string& text = node.text;
   if (node.quoted && parse_number(text).ok) return "leave out the quotes";
+  if (text.starts_with('=')) return "arithmetic stands in the values of a prescription, not here";
   if (text == "inf" || text == "-inf" || text == "Infinity" || text == "infinity") return "infinity is written .inf";
   const std::size_t end = text.find_first_not_of("+-.0123456789");
   if (end == std::string::npos || !parse_number(std::string_view(text).substr(0, end)).ok) return {};
