@@ -23,7 +23,7 @@ std::string findings_of(const std::string& file, const Settings& settings = {}) 
   return test::text_of(result.findings);
 }
 
-const std::string everywhere = R"(sagitta: 1
+const std::string everywhere = R"yaml(sagitta: 1
 name: = not arithmetic
 parameters: {A: 2, B: 0.5}
 wavelengths_nm: [= 500 + A, 600]
@@ -47,7 +47,7 @@ surfaces:
       = A +
       B
   - {name: image, zernike: {normalization_radius_mm: 3, indexing: noll, coefficients_um: [0, "= max(A, B)"]}}
-)";
+)yaml";
 
 void expect_values(const Model& model, double A, double B) {
   EXPECT_EQ(model.name, "= not arithmetic");
@@ -116,7 +116,7 @@ TEST(Arithmetic, AFaultIsToldWhereItStandsInTheFile) {
   const test::TemporaryFolder folder;
   const ReadResult result = read_prescription(folder.write("s.yaml", "sagitta: 1\nwavelengths_nm: [550]\naperture: {entrance_pupil_diameter_mm: 4}\nsurfaces: [{name: é, stop: true, thickness_mm: = 2 * C}, {}]\n"));
   ASSERT_EQ(result.findings.all().size(), 1u);
-  EXPECT_EQ(result.findings.all().front().place.column, 54);
+  EXPECT_EQ(result.findings.all().front().place.column, 55);
 }
 
 TEST(Arithmetic, WhatIsSetMustBeThereAndUsed) {
