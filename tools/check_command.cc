@@ -10,8 +10,8 @@
 namespace sagitta::tools {
 
 int check_command(const CheckOptions& options) {
-  const auto model = load_model(options.system);
-  if (!model) return 1;
+  const auto model = load_model(options.system, options.settings);
+  if (!model) return model.status;
   const auto compiled = load_scene(*model);
   if (!compiled) return 1;
   const scene::FirstOrder& paraxial = compiled->first_order;

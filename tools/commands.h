@@ -8,10 +8,17 @@
 #include <string>
 #include <vector>
 
+#include "lib/prescription/arithmetic.h"
+
 namespace sagitta::tools {
 
+// Of the commands that read systems.
+struct SystemOptions {
+  prescription::Settings settings;  // of their parameters
+};
+
 // Of the commands that trace a job.
-struct JobOptions {
+struct JobOptions : SystemOptions {
   std::string folder;
   std::int64_t ray_count = 10000;
   std::string pattern = "hexapolar";
@@ -25,7 +32,7 @@ struct TraceOptions : JobOptions {
 };
 int trace_command(const TraceOptions& options);
 
-struct ExplainOptions {
+struct ExplainOptions : SystemOptions {
   std::string system;
   std::vector<std::string> only;  // as of trace
   std::int64_t ray_count = 10000;
@@ -33,7 +40,7 @@ struct ExplainOptions {
 };
 int explain_command(const ExplainOptions& options);
 
-struct VerifyOptions {
+struct VerifyOptions : SystemOptions {
   std::vector<std::string> systems;
   std::int64_t ray_count = 100;
   double position_tolerance_mm = 1e-9, opd_tolerance_waves = 1e-4;
@@ -42,7 +49,7 @@ struct VerifyOptions {
 };
 int verify_command(const VerifyOptions& options);
 
-struct RaysOptions {
+struct RaysOptions : SystemOptions {
   std::string system;
   std::vector<std::string> pupil;  // "px,py"
   std::string fan;                 // "x:21" or "y:21"
@@ -60,7 +67,7 @@ struct CompareOptions : JobOptions {
 };
 int compare_command(const CompareOptions& options);
 
-struct CheckOptions {
+struct CheckOptions : SystemOptions {
   std::string system;
 };
 int check_command(const CheckOptions& options);
@@ -74,7 +81,7 @@ struct MaterialsOptions {
 };
 int materials_command(const MaterialsOptions& options);
 
-struct StudyOptions {
+struct StudyOptions : SystemOptions {
   std::string study;  // a name of systems/studies/, or a file
   std::string system;  // a prescription in its place: how its answers settle
   std::string folder;
@@ -98,5 +105,7 @@ struct FitOptions {
   bool json = false;
 };
 int fit_command(const FitOptions& options);
+
+int schema_command();
 
 }  // namespace sagitta::tools

@@ -47,12 +47,18 @@ std::vector<std::string> unique_slugs(const std::vector<ComparedModel>& models) 
   return slugs;
 }
 
-std::vector<ComparedModel> load_models(const std::vector<std::string>& files) {
+struct LoadedModels {
   std::vector<ComparedModel> models;
-  for (const std::string& file : files)
-    if (auto model = load_model(file))
-      models.push_back({model->name.empty() ? fs::path(file).stem().string() : model->name, *std::move(model), std::nullopt});
-  return models.size() == files.size() ? models : std::vector<ComparedModel>{};
+  int status = 0;  // where one is missing, as of load_model
+};
+LoadedModels load_models(const CompareOptions& options) {
+  LoadedModels loaded;
+  for (const std::string& file : options.systems) {
+    auto model = load_model(file, options.settings);
+    loaded.status = std::max(loaded.status, model.status);
+    if (model) loaded.models.push_back({model->name.empty() ? fs::path(file).stem().string() : model->name, *std::move(model), std::nullopt});
+  }
+  return loaded;
 }
 
 // Wavelengths, fields, object and beam of the first; false, with a message, where a medium does not reach so far.
@@ -164,8 +170,9 @@ int compare_command(const CompareOptions& options) {
   std::vector<VariantKind> kinds;
   if (!is_well_used(options, kinds)) return 2;
 
-  std::vector<ComparedModel> models = load_models(options.systems);
-  if (models.empty()) return 1;
+  LoadedModels loaded = load_models(options);
+  if (loaded.status != 0) return loaded.status;
+  std::vector<ComparedModel> models = std::move(loaded.models);
   std::string title;
   if (!kinds.empty()) {
     title = fmt::format("{}, {} from {}", models.front().name, options.surface, fs::path(options.points).filename().string());

@@ -11,8 +11,8 @@
 namespace sagitta::tools {
 
 int explain_command(const ExplainOptions& options) {
-  const auto model = load_model(options.system);
-  if (!model) return 1;
+  const auto model = load_model(options.system, options.settings);
+  if (!model) return model.status;
   const auto compiled = load_scene(*model, analysis::beam_of_job());
   if (!compiled) return 1;
   analysis::JobRequest request;

@@ -3,6 +3,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <set>
 #include <utility>
 
@@ -17,10 +19,17 @@ bool report(const prescription::Findings& findings) {
   return !findings.has_errors();
 }
 
-std::optional<prescription::Model> load_model(const std::string& file) {
-  prescription::ReadResult read = prescription::read_prescription(file);
-  if (!report(read.findings)) return std::nullopt;
-  return std::move(read.model);
+LoadedModel load_model(const std::string& file, const prescription::Settings& settings) {
+  prescription::ReadResult read = prescription::read_prescription(file, settings);
+  if (report(read.findings)) {
+    prescription::Model& model = *read.model;
+    if (model.name.empty() && !model.parameters.empty()) model.name = std::filesystem::path(file).stem().string();
+    for (const auto& [name, value] : model.parameters) model.name += fmt::format(", {} = {}", name, value);
+    return {std::move(read.model)};
+  }
+  const auto& all = read.findings.all();
+  const bool is_usage = std::any_of(all.begin(), all.end(), [](const auto& finding) { return prescription::is_of_command_line(finding.place); });
+  return {std::nullopt, is_usage ? 2 : 1};
 }
 
 std::optional<scene::CompileResult> load_scene(const prescription::Model& model, const scene::Beam& beam) {

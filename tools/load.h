@@ -6,13 +6,18 @@
 #include <string>
 #include <vector>
 
+#include "lib/prescription/arithmetic.h"
 #include "lib/prescription/model.h"
 #include "lib/scene/compile.h"
 
 namespace sagitta::tools {
 
-// None, after printing every finding to standard error, where there is an error.
-std::optional<prescription::Model> load_model(const std::string& file);
+// None, after printing every finding to standard error, where there is an error. With parameters, the name of the system tells their
+// values, in whatever is made of it: "Arizona eye, accommodation_D = 4".
+struct LoadedModel : std::optional<prescription::Model> {
+  int status = 0;  // where there is none, the exit status: 2 where it has not a parameter that is set, which is wrong usage; else 1
+};
+LoadedModel load_model(const std::string& file, const prescription::Settings& settings = {});
 std::optional<scene::CompileResult> load_scene(const prescription::Model& model, const scene::Beam& beam = {});
 
 // Replaces the wavelengths of a model (its primary one stays); false, with a message that begins with "sagitta `who`: ",

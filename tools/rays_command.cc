@@ -188,8 +188,8 @@ int rays_command(const RaysOptions& options) {
     fmt::print(stderr, "sagitta rays: {}\n", pupil.fault);
     return 2;
   }
-  auto model = load_model(options.system);
-  if (!model) return 1;
+  auto model = load_model(options.system, options.settings);
+  if (!model) return model.status;
   return options.from.empty() ? print_launched(options, std::move(*model), pupil.points) : print_given(options, std::move(*model));
 }
 

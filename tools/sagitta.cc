@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -41,6 +42,24 @@ CLI::Validator from_to(double low, double high) {
 
 CLI::IsMember one_of(std::string_view choices) { return CLI::IsMember(sagitta::numerics::words_of(choices)); }
 
+// --set NAME=VALUE, as often as wanted.
+CLI::Option* add_settings(CLI::App& command, SystemOptions& options) {
+  const auto take = [&options](const std::vector<std::string>& given) {
+    for (const std::string& text : given) {
+      const std::size_t end = text.find('=');
+      const std::string name = text.substr(0, end);
+      double value = 0;
+      if (end == std::string::npos || end == 0 || !CLI::detail::lexical_cast(text.substr(end + 1), value) || !std::isfinite(value))
+        throw CLI::ValidationError("--set", fmt::format("{}: expected NAME=VALUE with a number, such as accommodation_D=4", text));
+      for (const auto& before : options.settings)
+        if (before.name == name) throw CLI::ValidationError("--set", fmt::format("{} is set twice", name));
+      options.settings.push_back({name, value});
+    }
+  };
+  return command.add_option_function<std::vector<std::string>>("--set", take, "NAME=VALUE: sets a parameter that the system declares; for several, several times")
+      ->type_name("NAME=VALUE")->allow_extra_args(false);
+}
+
 void add_only(CLI::App& command, std::vector<std::string>& only) {
   command.add_option("--only", only, "spot, wavefront, or both separated by a comma (default: both)")
       ->delimiter(',')->check(CLI::IsMember({"spot", "wavefront"}));
@@ -67,6 +86,7 @@ void add_trace(CLI::App& app, int& status) {
                       "folder for spot.exr, spot.png, wavefront.exr, wavefront.png and summary.json")->required();
   add_only(*command, options.only);
   add_job(*command, options);
+  add_settings(*command, options);
   command->callback([&status] { status = trace_command(options); });
 }
 
@@ -77,6 +97,7 @@ void add_explain(CLI::App& app, int& status) {
   add_only(*command, options.only);
   add_ray_count(*command, options.ray_count);
   command->add_flag("--json", options.json, "print JSON in place of the tables");
+  add_settings(*command, options);
   command->callback([&status] { status = explain_command(options); });
 }
 
@@ -89,6 +110,7 @@ void add_verify(CLI::App& app, int& status) {
   command->add_option("--opd-waves", options.opd_tolerance_waves, "what a wavefront may be off by, waves")->check(from_to(0, 1e300))->capture_default_str();
   command->add_option("--threads", options.thread_count, "threads (default: as many as the machine runs)")->check(CLI::Range(1, 1024));
   command->add_flag("--json", options.json, "print JSON in place of the tables");
+  add_settings(*command, options);
   command->callback([&status] { status = verify_command(options); });
 }
 
@@ -114,6 +136,7 @@ void add_compare(CLI::App& app, int& status) {
   surface->needs(with)->needs(as);
   for (CLI::Option* option : {with, as, format, axes, radius, smoothing, edge}) option->needs(surface);
   add_job(*command, options);
+  add_settings(*command, options);
   command->callback([&status] { status = compare_command(options); });
 }
 
@@ -131,6 +154,7 @@ void add_rays(CLI::App& app, int& status) {
   pupil->excludes(from);
   fan->excludes(from)->excludes(pupil);
   field->excludes(from);
+  add_settings(*command, options);
   command->callback([&status] { status = rays_command(options); });
 }
 
@@ -138,6 +162,7 @@ void add_check(CLI::App& app, int& status) {
   static CheckOptions options;
   CLI::App* command = app.add_subcommand("check", "Read and check a prescription and every file it names");
   command->add_option("SYSTEM", options.system, "prescription (YAML)")->required();
+  add_settings(*command, options);
   command->callback([&status] { status = check_command(options); });
 }
 
@@ -168,10 +193,11 @@ void add_study(CLI::App& app, int& status) {
   static StudyOptions options;
   CLI::App* command = app.add_subcommand("study", "Measure error against run time: every variant of a study, as tables, plots and a page");
   auto* study = command->add_option("STUDY", options.study, "study (YAML), or the name of one of systems/studies/");
-  command->add_option("--system", options.system, "in its place a prescription (YAML): how its spots and wavefronts settle with more rays, and with every interpolation of its points")->excludes(study);
+  auto* system = command->add_option("--system", options.system, "in its place a prescription (YAML): how its spots and wavefronts settle with more rays, and with every interpolation of its points")->excludes(study);
   command->add_option("-o,--output", options.folder, "folder for study.csv, study.json, study.md and the plots; finished rows of the same study there are kept (not with --system)")->required();
   command->add_option("--threads", options.thread_count, "threads for the exact rays, for variants with threads: 0, and with --system (default: as many as the machine runs)")
       ->check(CLI::Range(1, 1024));
+  add_settings(*command, options)->needs(system);
   command->callback([&status] {
     if (options.study.empty() && options.system.empty()) throw CLI::RequiredError("STUDY or --system");
     status = study_command(options);
@@ -194,6 +220,11 @@ void add_fit(CLI::App& app, int& status) {
   command->add_option("-o,--output", options.fragment, "FILE.yaml for the shape; FILE.exr and FILE.png, the residual map, beside it");
   command->add_flag("--json", options.json, "print the fit as JSON in place of the tables");
   command->callback([&status] { status = fit_command(options); });
+}
+
+void add_schema(CLI::App& app, int& status) {
+  app.add_subcommand("schema", "Print the JSON Schema of a prescription, for editors that complete and check while you type")
+      ->callback([&status] { status = schema_command(); });
 }
 
 // The same few megabytes are wanted again and again, by blocks of rays, maps and pictures. Pages that were given back to the system
@@ -244,6 +275,7 @@ int main(int argc, char** argv) {
   add_fit(app, status);
   add_convert(app, status);
   add_study(app, status);
+  add_schema(app, status);
   try {
     status = exit_status(app, argc, argv, status);
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw std::system_error(errno, std::generic_category());

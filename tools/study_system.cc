@@ -123,8 +123,9 @@ output::Records system_records(const SystemStudy& system) {
 
 int study_system(const StudyOptions& options) {
   if (is_of_the_other_kind(options.system, "sagitta_study", "this is a study, not a system", fmt::format("give it as it is: sagitta study {} -o {}", options.system, options.folder))) return 1;
-  const auto model = load_model(options.system);
-  if (!model || !load_scene(*model, analysis::beam_of_job())) return 1;  // nothing is made where it is wrong
+  const auto model = load_model(options.system, options.settings);
+  if (!model) return model.status;  // nothing is made where it is wrong
+  if (!load_scene(*model, analysis::beam_of_job())) return 1;
   if (!pictures(command)) return 1;
   const fs::path folder(options.folder);
   if (!make_folder(command, folder)) return 1;

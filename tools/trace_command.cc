@@ -19,8 +19,8 @@ namespace sagitta::tools {
 int trace_command(const TraceOptions& options) {
   auto request = make_request("trace", options);
   if (!request) return 2;
-  const auto model = load_model(options.system);
-  if (!model) return 1;
+  const auto model = load_model(options.system, options.settings);
+  if (!model) return model.status;
   pictures("trace");
   const std::filesystem::path folder(options.folder);
   request->want_spot = wants(options.only, "spot");

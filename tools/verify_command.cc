@@ -17,8 +17,8 @@ int verify_command(const VerifyOptions& options) {
   const study::RoundingRequest request{options.ray_count, options.position_tolerance_mm, options.thread_count};
   std::vector<std::pair<prescription::Model, scene::CompileResult>> systems;  // all are right before the first is looked at
   for (const std::string& system : options.systems) {
-    auto model = load_model(system);
-    if (!model) return 1;
+    auto model = load_model(system, options.settings);
+    if (!model) return model.status;
     auto compiled = load_scene(*model);
     if (!compiled) return 1;
     systems.emplace_back(std::move(*model), std::move(*compiled));

@@ -10,6 +10,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lib/analysis/job.h"
@@ -25,6 +26,7 @@ namespace sagitta::output {
 
 struct Report {
   std::string system, version;
+  std::vector<std::pair<std::string, double>> parameters;  // of the system, as they were set
   bool fields_are_heights = false;
   std::vector<std::array<double, 2>> fields;  // degrees, or mm
   std::vector<double> wavelengths_nm;

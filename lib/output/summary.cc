@@ -118,6 +118,7 @@ ordered_json report_json(const Report& report) {
                     {"version", report.version},
                     {"first_order", first_order_json(report.first_order)},
                     {"results", ordered_json::array()}};
+  for (const auto& [name, value] : report.parameters) json["parameters"][name] = value;
   if (!report.smoothing.empty()) json["smoothing"] = smoothing_json(report);
   for (const auto& part : report.parts) json["triangulated"].push_back({{"surface", part.surface}, {"points", part.points}, {"used", part.used}});
   for (const auto& result : report.results) json["results"].push_back(result_json(report, result));

@@ -16,6 +16,8 @@ struct Place {
   int column = 0;
 };
 
+inline bool is_of_command_line(const Place& place) { return place.line == -1; }
+
 enum class Severity { error, warning, note };
 
 struct Finding {

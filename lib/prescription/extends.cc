@@ -112,6 +112,14 @@ YamlNode::Pointer merged_surfaces(const YamlNode::Pointer& base, const YamlNode&
   return result;
 }
 
+YamlNode::Pointer merged_parameters(const YamlNode::Pointer& base, const YamlNode::Pointer& changes) {
+  if (changes->kind != YamlNode::Kind::mapping) return changes;  // which is an error here,
+  if (base->kind != YamlNode::Kind::mapping) return base;        // and this one of the base
+  auto result = std::make_shared<YamlNode>(*base);
+  put(result->entries, changes->entries);
+  return result;
+}
+
 // Both files are of the same version of the format, or the base's keys would be read by other rules than were meant.
 void check_version(const YamlNode& base, Findings& findings) {
   if (const YamlNode::Pointer version = base.find("sagitta"))
@@ -122,8 +130,9 @@ YamlNode::Pointer merged(const YamlNode& base, const YamlNode& changes, Findings
   auto result = std::make_shared<YamlNode>(changes);
   for (YamlNode::Entry& entry : result->entries) {
     if (entry.key == "sagitta") check_version(base, findings);
-    if (entry.key != "surfaces") continue;
-    if (const YamlNode::Pointer old = base.find(entry.key)) entry.value = merged_surfaces(old, *entry.value, findings);
+    const YamlNode::Pointer old = base.find(entry.key);
+    if (old && entry.key == "surfaces") entry.value = merged_surfaces(old, *entry.value, findings);
+    if (old && entry.key == "parameters") entry.value = merged_parameters(old, entry.value);
   }
   Entries entries = base.entries;
   put(entries, std::exchange(result->entries, {}));

@@ -4,7 +4,8 @@
 //
 // The keys of the file replace those of its base. Its `surfaces` are a list in which each entry has the `name` of exactly
 // one surface of the base: the entry's keys replace that surface's, a shape replaces its shape whichever kind it has. A
-// base may extend another: at most 16 files in all.
+// base may extend another: at most 16 files in all. `parameters` give values to those of the base, by name, and may declare
+// others.
 //
 // Errors: a base that is not there, a file that extends itself through others, a longer chain; a name that is missing,
 // unknown, borne by several surfaces of the base, or repeated.

@@ -12,6 +12,7 @@
 #include "lib/numerics/vec3.h"
 #include "lib/prescription/diagnostics.h"
 #include "lib/prescription/documents.h"
+#include "lib/prescription/expression.h"
 #include "lib/prescription/parameters.h"
 #include "lib/prescription/point_cloud.h"
 
@@ -65,6 +66,7 @@ struct Model {
   std::string file;
   std::vector<Document> documents;  // the file and the bases that it extends
   std::string name, source;
+  std::vector<ParameterValue> parameters;  // as they were set, in the order of their declaration
   std::vector<double> wavelengths_nm;
   std::optional<double> primary_nm;  // none: the first wavelength
   Aperture aperture;

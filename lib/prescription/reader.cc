@@ -115,11 +115,15 @@ Model read_model(const YamlNode& root, const std::vector<Document>& documents, F
 
 }  // namespace
 
-ReadResult read_prescription(const std::string& file) {
+ReadResult read_prescription(const std::string& file, const Settings& settings) {
   Findings findings;
   std::optional<Model> model;
   const ExtendedTree tree = read_extended(file, findings);
-  if (tree.root) model = read_model(*tree.root, tree.documents, findings);
+  if (tree.root) {
+    ComputedTree computed = with_arithmetic(tree.root, file, settings, findings);
+    model = read_model(*computed.root, tree.documents, findings);
+    model->parameters = std::move(computed.parameters);
+  }
   if (findings.has_errors()) model.reset();
   return {std::move(model), in_order(findings, tree.documents)};
 }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "lib/prescription/arithmetic.h"
 #include "lib/prescription/diagnostics.h"
 #include "lib/prescription/model.h"
 
@@ -16,6 +17,7 @@ struct ReadResult {
   Findings findings;
 };
 
-ReadResult read_prescription(const std::string& file);
+// Settings are of parameters that the prescription, or what it extends, declares.
+ReadResult read_prescription(const std::string& file, const Settings& settings = {});
 
 }  // namespace sagitta::prescription

@@ -47,6 +47,7 @@ std::string shown(const YamlNode& node) {
       break;
   }
   if (node.text.empty()) return "an empty text";
+  if (node.arithmetic && !node.arithmetic->fault) return fmt::format("{}, what '{}' comes to", node.arithmetic->value, excerpt(node.text));
   return fmt::format("{}'{}'", node.quoted ? "the text " : "", excerpt(node.text));
 }
 
@@ -55,6 +56,7 @@ std::string number_hint(const YamlNode& node) {
   if (node.kind != YamlNode::Kind::scalar) return {};
   const std::string& text = node.text;
   if (node.quoted && parse_number(text).ok) return "leave out the quotes";
+  if (text.starts_with('=')) return "arithmetic stands in the values of a prescription, not here";
   if (text == "inf" || text == "-inf" || text == "Infinity" || text == "infinity") return "infinity is written .inf";
   const std::size_t end = text.find_first_not_of("+-.0123456789");
   if (end == std::string::npos || !parse_number(std::string_view(text).substr(0, end)).ok) return {};
@@ -97,7 +99,13 @@ void refuse(const YamlNode& node, const std::string& label, const std::string& l
 
 std::optional<double> read_number(const YamlNode& node, const std::string& label, const numerics::Range& range,
                                   Findings& findings) {
-  const ParsedNumber parsed = is_plain(node) ? parse_number(node.text) : ParsedNumber{};
+  if (node.arithmetic && node.arithmetic->fault) {
+    Finding fault = *node.arithmetic->fault;
+    fault.what = fmt::format("{}: {}", label, fault.what);
+    findings.add(std::move(fault));
+    return std::nullopt;
+  }
+  const ParsedNumber parsed = node.arithmetic ? ParsedNumber{true, node.arithmetic->value} : is_plain(node) ? parse_number(node.text) : ParsedNumber{};
   if (parsed.ok && std::isfinite(parsed.value) && std::abs(parsed.value) > largest_number) {
     findings.error(node.place, fmt::format("{} must be at most {:g} in size, not {}", label, largest_number, shown(node)),
                    "products of larger numbers are infinite, and rays could not be traced");

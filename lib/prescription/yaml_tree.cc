@@ -41,7 +41,7 @@ struct Stop {
 
 class TreeBuilder : public YAML::EventHandler {
  public:
-  explicit TreeBuilder(std::string file) : file_(std::move(file)) {}
+  TreeBuilder(std::string file, std::string_view source) : file_(std::move(file)), source_(source) {}
 
   YamlNode::Pointer root;
   std::vector<Stop> repeated_keys;
@@ -120,6 +120,7 @@ class TreeBuilder : public YAML::EventHandler {
         kind == YamlNode::Kind::null && !open_.empty() && open_.back().key ? open_.back().key->second : place(mark);
     node->text = text;
     node->quoted = quoted;
+    if (text.starts_with('=') && text.find('\n') == std::string::npos) node->text_column = column_of_text(mark, text);
     const Subtree subtree{node, 1, 1, text.size()};
     count(mark, subtree);
     add(subtree, node->place);
@@ -170,7 +171,16 @@ class TreeBuilder : public YAML::EventHandler {
     }
   }
 
+  // Behind the quote, of a quoted one.
+  int column_of_text(const YAML::Mark& mark, const std::string& text) const {
+    for (int quote = 0; quote <= 1; ++quote)
+      if (const auto from = static_cast<std::size_t>(mark.pos + quote); from <= source_.size() && source_.substr(from, text.size()) == text)
+        return mark.column + 1 + quote;
+    return 0;
+  }
+
   std::string file_;
+  std::string_view source_;
   std::vector<Open> open_;
   std::unordered_map<YAML::anchor_t, Subtree> anchored_;
   std::size_t node_count_ = 0, byte_count_ = 0;
@@ -229,9 +239,9 @@ YamlNode::Pointer read_yaml(const std::string& file, Findings& findings) {
     findings.error({file}, too_many_values);
     return nullptr;
   }
-  TreeBuilder builder(file);
+  std::istringstream stream(*std::move(text));
+  TreeBuilder builder(file, stream.view());
   try {
-    std::istringstream stream(*std::move(text));
     YAML::Parser parser(stream);
     while (parser.HandleNextDocument(builder)) {
     }

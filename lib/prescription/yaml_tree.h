@@ -5,6 +5,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,6 +27,13 @@ struct YamlNode {
   Place place;
   std::string text;            // of a scalar
   bool quoted = false;         // a quoted scalar is a text even where it looks like a number
+  int text_column = 0;         // of the first byte of a text that begins with '=' and stands in one line of the file as it is; else 0
+  // Of such a text, where with_arithmetic() has been at work: what it comes to, or why it does not.
+  struct Arithmetic {
+    double value = 0;
+    std::optional<Finding> fault;
+  };
+  std::shared_ptr<const Arithmetic> arithmetic;
   std::vector<Pointer> items;  // of a sequence
   std::vector<Entry> entries;  // of a mapping, in the order of the file; repeated keys are reported and kept once
 

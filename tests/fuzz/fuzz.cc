@@ -44,7 +44,7 @@ const std::vector<std::string>& words() {
                                    "points.cso", "points.ply", "glass", "mirror", "air", "true", "false", "DATA:", "type: ", "formula ", "tabulated n", "tabulated nk",
                                    "wavelength_range: ", "coefficients: ", "data: |\n", "NM ", "CD ", "LD ", "GC ", "formula Cornu", "Dato misurato : Elevazioni\n", "Anelli : ", "Semimeridiani : ", "---\n", "-1000", ";", "\t",
                                    "x,y,z\n", "ring,meridian,radius,z\n", "element vertex ", "element face ", "property double ", "property float ", "property list uchar int i\n",
-                                   "format ascii 1.0\n", "format binary_little_endian 1.0\n", "format binary_big_endian 1.0\n", "end_header\n", "comment\n", "\r\n", "\xEF\xBB\xBF"};
+                                   "format ascii 1.0\n", "format binary_little_endian 1.0\n", "format binary_big_endian 1.0\n", "end_header\n", "comment\n", "\r\n", "\xEF\xBB\xBF", "parameters: {A: 4}\n", "= A", "= 2 * ", "= max(A, ", "ln(", "-(", "^"};
     const auto take = [&](prescription::KeyTable table) {
       for (const numerics::Key& key : table) {
         found.push_back(std::string(key.name) + ": ");
