@@ -48,7 +48,9 @@ inline constexpr Range nonzero_or_infinite{.zero = false, .infinite = true};
 
 // The legal indices of an `indexed` value; a list counts from the first.
 struct IndexRange {
-  int first = 0, last = 100'000;
+  int first = 0, last = 100'000, step = 1;
+
+  bool contains(int index) const { return index >= first && index <= last && (index - first) % step == 0; }
 };
 
 struct Key {

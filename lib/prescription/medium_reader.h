@@ -3,12 +3,14 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "lib/medium/medium.h"
 #include "lib/prescription/check.h"
 #include "lib/prescription/diagnostics.h"
+#include "lib/prescription/model.h"
 #include "lib/prescription/yaml_tree.h"
 
 namespace sagitta::prescription {
@@ -20,8 +22,9 @@ class MediumReader {
   struct Read {
     medium::Medium medium = medium::air();  // air too where there was an error
     bool is_mirror = false;
+    std::optional<GradientMedium> gradient{};  // if it is one, `medium` has its dispersion
   };
-  // A name, {index: ...}, {nd: ..., vd: ...} or mirror; a null pointer is the default, air.
+  // A name, {index: ...}, {nd: ..., vd: ...}, {grin: ...} or mirror; a null pointer is the default, air.
   Read read(const YamlNode* node);
 
   // Every medium that was read, with its place.
@@ -30,6 +33,7 @@ class MediumReader {
  private:
   medium::Medium read_name(const YamlNode& node);
   medium::Medium read_inline(const YamlNode& node);
+  Read read_gradient(const YamlNode& node);
 
   Findings& findings_;
   // By folder and name, since a name means a file beside the one in which it stands.
