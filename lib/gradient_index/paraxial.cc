@@ -29,9 +29,11 @@ ParaxialTransfer transfer(const FormType& form, double z, double thickness, doub
   constexpr Tolerance finest{1e-15};
   const BesideTheAxis<FormType> medium{form};
   const double z_end = z + thickness;
-  InMedium<double> at = medium.at({0, 0, z});
+  const State<double> start{{1, 0, z}, {0, 1, 0}, 0};
+  InMedium<double> at = medium.at(start.position);
   const double index_start = std::sqrt(at.squared_index);
-  State<double> ray{{1, 0, z}, {0, 1, heading * index_start}, 0};
+  State<double> ray = start;
+  ray.optical_direction.z = heading * index_start;
   double longest = std::numeric_limits<double>::infinity();
   for (int steps = 0; steps < most_steps && is_squared_index(at.squared_index); ++steps) {
     const double left = z_end - ray.position.z;

@@ -12,7 +12,7 @@
 //
 // Which crossing: that of the tangent, continued. Where the tangent's path to the surface is negative the ray goes back; so a virtual path is integrated
 // like any other. Where the tangent misses, the ray goes forward if it is before the surface. Of several crossings the first on that way is the hit, from the
-// side on which the ray comes. Two within a quarter of a step may be passed by.
+// side on which the ray comes; a ray that goes there and back within a quarter of a step, as where it turns, is seen by where it is nearest.
 //
 // missed         the ray leaves the medium (n is no index any more) or the neighbourhood (a thousand times the distances that there were), without a crossing
 // outside_data   likewise, where it came through a hole or beyond the points of a measured surface
@@ -38,7 +38,13 @@ struct Arrival {
   int steps;
 };
 
-// `surface` has meet(place, direction), a Crossing<T>, and sag(x, y) in doubles.
+template <class T>
+struct TangentPlane {
+  T sag;
+  surface::Gradient<T> slope;
+};
+
+// `surface` has meet(place, direction), a Crossing<T>; tangent(x, y), a TangentPlane<T>; and sag(x, y) in doubles.
 template <class T, class Medium, class Surface>
 class Traveller {
  public:
@@ -121,21 +127,35 @@ class Traveller {
     const State<double> a = in_doubles(from_), b = in_doubles(to);
     const auto pull_a = numerics::vec3_cast<double>(at_.pull), pull_b = numerics::vec3_cast<double>(at_to.pull);
     const auto height_at = [&](double part) { return height(part == 1 ? b.position : place_within(a, pull_a, b, pull_b, h, part)); };
+    // Whether it comes nearer there. (Over a thousandth of the step, in which rounding shows last.)
+    const auto comes_nearer = [&](double part) { return (height_at(part) - height_at(part - 1e-3)) * side_ < 0; };
     double behind = 0;  // the part of the step that is behind
+    bool came_nearer = comes_nearer(1e-3);
     for (const double part : {0.25, 0.5, 0.75, 1.0}) {
-      const bool is_before_here = is_before(height_at(part));
-      if (was_before_ && !is_before_here) {
-        double low = behind, high = part;
-        for (int halvings = 0; halvings < 20; ++halvings) {
-          const double middle = (low + high) / 2;
-          (is_before(height_at(middle)) ? low : high) = middle;
-        }
-        const Found found = settle(T(low * h), T(high * h), h);
+      const bool is_before_here = is_before(height_at(part)), comes_nearer_here = comes_nearer(part);
+      double beyond_it = part;  // where the surface is behind
+      bool crosses = was_before_ && !is_before_here;
+      if (was_before_ && is_before_here && came_nearer && !comes_nearer_here) {  // perhaps there and back: nearest in between
+        const double nearest = last_where(comes_nearer, behind + 1e-3, part);
+        if (!is_before(height_at(nearest))) beyond_it = nearest, crosses = true;
+      }
+      if (crosses) {
+        const double low = last_where([&](double where) { return is_before(height_at(where)); }, behind, beyond_it);
+        const Found found = settle(T(low * h), T(std::min(low + 1e-6, part) * h), h);
         if (found != Found::none) return found;
       }
-      was_before_ = is_before_here, behind = part;
+      was_before_ = is_before_here, came_nearer = comes_nearer_here, behind = part;
     }
     return Found::none;
+  }
+  // It is so at `low`, not at `high`: the last place where it is, to 1e-6.
+  template <class IsSo>
+  static double last_where(const IsSo& is_so, double low, double high) {
+    while (high - low > 1e-6) {
+      const double middle = (low + high) / 2;
+      (is_so(middle) ? low : high) = middle;
+    }
+    return low;
   }
 
   // Newton's method on the ray, from t on, a time within the step; the polynomial says that the ray has crossed at t_behind. none: there it leaves the domain of the
@@ -146,11 +166,10 @@ class Traveller {
     for (int look = 0; look < most_looks; ++look) {
       const State<T> state = at_time(t);
       const InMedium<T> at = medium_.at(state.position);
-      const Crossing<T> crossing = surface_.meet(state.position, unit(state.optical_direction));
-      if (crossing.status == Status::outside_data) why_ = Status::outside_data;
-      if (crossing.status != Status::ok) break;
-      const double n = std::sqrt(static_cast<double>(at.squared_index)), d = size_of(crossing.path), step = std::abs(h) * n;
-      if (!(d <= step)) break;  // another crossing, far away
+      const double n = std::sqrt(static_cast<double>(at.squared_index)), step = std::abs(h) * n;
+      const Crossing<T> crossing = crossing_near(state, step);
+      const double d = size_of(crossing.path);
+      if (!(d <= step)) break;  // another crossing, far away, or none
       const double turn = d * std::max(size_of(at.pull), size_of(medium_.at(crossing.point).pull)) / (n * n);
       if ((turn * turn <= rounding && d <= 1e-3 * step) || d <= 8 * rounding * size_of(state.position)) {
         arrival_ = arrive(state, at, crossing);
@@ -159,6 +178,19 @@ class Traveller {
       t = t + crossing.path / sqrt_of(at.squared_index);
     }
     return std::isnan(height(in_doubles(at_time(t_behind)).position)) ? Found::none : Found::nothing_settled;
+  }
+  // By the surface's own meet(), or, of a ray that has turned over, which meet() would send to its other crossing, by the tangent plane below the place: then what is
+  // met in the end, when nothing is left of the path, is the surface too.
+  Crossing<T> crossing_near(const State<T>& state, double step) {
+    const Vec3<T> d = unit(state.optical_direction);
+    const Crossing<T> met = surface_.meet(state.position, d);
+    if (met.status == Status::outside_data) why_ = Status::outside_data;
+    if (met.status == Status::ok && size_of(met.path) <= step) return met;
+    const auto tangent = surface_.tangent(state.position.x, state.position.y);
+    const Vec3<T> normal{-tangent.slope.x, -tangent.slope.y, T(1)};
+    const T along = dot(d, normal), path = (tangent.sag - state.position.z) / along;
+    if (!(static_cast<double>(along) * sense_ * side_ < 0)) return surface::no_crossing<T>(Status::missed);
+    return {path, state.position + path * d, normal, along, Status::ok};
   }
   static T sqrt_of(const T& x) {
     using std::sqrt;

@@ -44,6 +44,9 @@ struct AnyShape {
   surface::Crossing<T> meet(const Vec3<T>& place, const Vec3<T>& direction) const {
     return std::visit([&](const auto& of) -> surface::Crossing<T> { return of.meet(place, direction); }, shape);
   }
+  gradient_index::TangentPlane<T> tangent(const T& x, const T& y) const {
+    return std::visit([&](const auto& of) -> gradient_index::TangentPlane<T> { return {of.sag(x, y), of.gradient(x, y)}; }, shape);
+  }
   double sag(double x, double y) const {
     return std::visit([&](const auto& of) { return of.sag(x, y); }, shape);
   }
