@@ -127,16 +127,16 @@ class Traveller {
     const State<double> a = in_doubles(from_), b = in_doubles(to);
     const auto pull_a = numerics::vec3_cast<double>(at_.pull), pull_b = numerics::vec3_cast<double>(at_to.pull);
     const auto height_at = [&](double part) { return height(part == 1 ? b.position : place_within(a, pull_a, b, pull_b, h, part)); };
-    // Whether it comes nearer there. (Over a thousandth of the step, in which rounding shows last.)
+    // Whether it comes nearer there, over the last thousandth of the step: rounding does not show in that.
     const auto comes_nearer = [&](double part) { return (height_at(part) - height_at(part - 1e-3)) * side_ < 0; };
     double behind = 0;  // the part of the step that is behind
-    bool came_nearer = comes_nearer(1e-3);
+    bool was_before = was_before_, came_nearer = came_nearer_;
     for (const double part : {0.25, 0.5, 0.75, 1.0}) {
       const bool is_before_here = is_before(height_at(part)), comes_nearer_here = comes_nearer(part);
       double beyond_it = part;  // where the surface is behind
-      bool crosses = was_before_ && !is_before_here;
-      if (was_before_ && is_before_here && came_nearer && !comes_nearer_here) {  // perhaps there and back: nearest in between
-        const double nearest = last_where(comes_nearer, behind + 1e-3, part);
+      bool crosses = was_before && !is_before_here;
+      if (was_before && is_before_here && came_nearer && !comes_nearer_here) {  // perhaps there and back: nearest in between
+        const double nearest = last_where(comes_nearer, behind + 1e-3, part) - 0.5e-3;
         if (!is_before(height_at(nearest))) beyond_it = nearest, crosses = true;
       }
       if (crosses) {
@@ -144,8 +144,9 @@ class Traveller {
         const Found found = settle(T(low * h), T(std::min(low + 1e-6, part) * h), h);
         if (found != Found::none) return found;
       }
-      was_before_ = is_before_here, came_nearer = comes_nearer_here, behind = part;
+      was_before = is_before_here, came_nearer = comes_nearer_here, behind = part;
     }
+    was_before_ = was_before, came_nearer_ = came_nearer;
     return Found::none;
   }
   // It is so at `low`, not at `high`: the last place where it is, to 1e-6.
@@ -217,7 +218,7 @@ class Traveller {
   Arrival<T> arrival_{};
   Status why_ = Status::missed;
   double sense_ = 1, side_ = -1, length_ = 0, reach_ = 0;
-  bool was_before_ = false;
+  bool was_before_ = false, came_nearer_ = true;
   int steps_ = 0;
 };
 

@@ -263,14 +263,14 @@ TEST(Travel, WithoutAGradientItIsTheStraightLine) {
 // n^2 = 1.96 - z/10, p_z = 1.12 at the start: p_z^2 = 1.2544 - z/10, so the ray turns back at 12.544 mm.
 TEST(Travel, ARayThatTurnsBackBeforeTheSurfaceMissesIt) {
   const Quadratic falling{1.4, {0, 0, -0.1}, {}};
-  for (const double length : {12.4, 12.5, 12.54, 12.5439, 12.543999}) {
+  for (const double length : {12.4, 12.5, 12.54, 12.5439, 12.543999, 12.5439999}) {
     const auto at = arrival(falling, length, Plane{}, {0, 0, -length}, {0, 0.6, 0.8});
     ASSERT_EQ(at.crossing.status, Status::ok) << length;
     const double p_z = std::sqrt(1.2544 - 0.1 * length), t = (1.12 - p_z) / 0.05;
     EXPECT_NEAR(at.state.position.y, 0.84 * t, 1e-11 / p_z) << length;
     EXPECT_NEAR(at.state.optical_direction.z, p_z, 1e-11 / p_z) << length;
   }
-  for (const double length : {12.544001, 12.55, 12.6, 50.0}) EXPECT_EQ(arrival(falling, length, Plane{}, {0, 0, -length}, {0, 0.6, 0.8}).crossing.status, Status::missed) << length;
+  for (const double length : {12.54400001, 12.544001, 12.55, 12.6, 50.0}) EXPECT_EQ(arrival(falling, length, Plane{}, {0, 0, -length}, {0, 0.6, 0.8}).crossing.status, Status::missed) << length;
 }
 
 TEST(Travel, ARayThatNeverComesIsLostInBoundedSteps) {
