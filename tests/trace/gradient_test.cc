@@ -194,6 +194,31 @@ TEST(Gradient, ARayThatComesOutWhereThereIsNoIndexIsLost) {
   EXPECT_EQ(rays.status(1), Status::ok);
 }
 
+TEST(Gradient, AnImageThatEndsAGradientHasASpotButNoWavefront) {
+  const CompiledScene rod = scene_of("  - {stop: true, thickness_mm: 5.235987755982989, medium: {grin: {selfoc: {index: 1.6, g_per_mm: 0.3}}}}\n  - {}\n", "entrance_pupil_diameter_mm: 0.1");
+  EXPECT_NEAR(rod.first_order.effective_focal_length, 1 / 0.48, 1e-12);
+  EXPECT_NEAR(rod.first_order.rear_focal_length, 1.6 / 0.48, 1e-12);  // as if the rod's axis went on
+  const auto result = analysis::wavefront(rod.scene, rod.scene.primary, rod.scene.fields[0], {});
+  EXPECT_FALSE(result.wavefront);
+  EXPECT_NE(result.reason.find("gradient-index"), std::string::npos) << result.reason;
+  RayBatch rays = launch(rod.scene, rod.scene.fields[0], 1, pupil_points({PatternKind::hexapolar}, 60));
+  trace(rod.scene, rod.scene.primary, rays);
+  for (std::size_t i = 0; i < rays.size(); ++i) EXPECT_LE(std::hypot(rays.x[i], rays.y[i]), 1e-4);  // g^2 r^3, and a few times that
+}
+
+TEST(Gradient, ACoarserToleranceOfTheSystemTakesFewerSteps) {
+  const auto lens = [](const std::string& tolerance) {
+    return scene_of("  - {stop: true, thickness_mm: 200, medium: {grin: {selfoc: {index: 1.6, g_per_mm: 0.3}}}}\n  - {}\n", "entrance_pupil_diameter_mm: 0.1", tolerance);
+  };
+  const CompiledScene fine = lens(""), coarse = lens("tolerance_mm: 1e-6\n");
+  EXPECT_EQ(fine.scene.tolerance.mm, gradient_index::default_tolerance_mm);
+  EXPECT_EQ(coarse.scene.tolerance.mm, 1e-6);
+  const GlobalRay ray{{0.2, 1, -1}, {0, 0, 1}};
+  const double off = norm(traced(fine, ray).p - traced(coarse, ray).p);
+  EXPECT_GT(off, 1e-11);
+  EXPECT_LT(off, 1e-5);
+}
+
 TEST(Gradient, WhatIsNotAMediumIsAnError) {
   const auto errors = [](const std::string& surfaces) {
     const test::Folder folder;
