@@ -5,7 +5,8 @@
 // of a thin meniscus, so that all of its 12 surfaces refract; its conics are the same with K = -0.1 and 0.1 in turn; its moved
 // ones these conics with 10 um of decenter and 0.02 degrees of tilt each. The fraction is of what the divider allows, for the roots and
 // divisions of a ray at a surface; where divisions are quick, the ports that multiply and add are the nearer limit, for as many such
-// operations, none of them joined (the same bits everywhere). `sagitta explain` counts them. Points lie over just the beam, 4 mm wide.
+// operations, none of them joined (the same bits everywhere). `sagitta explain` counts them. Points lie over just the beam, 4 mm wide. The eye has 7
+// surfaces and two gradient-index media, which take nearly all of its time.
 #include "tools/bench_kernels.h"
 
 #include <benchmark/benchmark.h>
@@ -83,6 +84,7 @@ const std::vector<Kernel>& kernels() {
       {"linear_4e4/bundle", 30, 0, 0, 0, [] { return with_beam(corneas("linear", 40'000, 1, data_radius), false); }},
       {"linear_4e6/random", 10, 0, 0, 0, [] { return with_beam(corneas("linear", 4'000'000, 1, data_radius), true); }},
       {"linear_4e6/bundle", 16, 0, 0, 0, [] { return with_beam(corneas("linear", 4'000'000, 1, data_radius), false); }},
+      {"gradient_eye_7", NAN, 0, 0, 0, [] { return with_beam(compiled(read_system("liou-brennan-eye.yaml")), false); }},
       {"c1_4e4/random", 10, 0, 0, 0, [] { return with_beam(corneas("c1", 40'000, 1, data_radius), true); }}};
   return all;
 }

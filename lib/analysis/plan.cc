@@ -10,7 +10,9 @@
 
 #include "lib/scene/compile.h"
 #include "lib/surface/block.h"
+#include "lib/trace/gradient_step.h"
 #include "lib/trace/launch.h"
+#include "lib/trace/pattern.h"
 #include "lib/trace/step.h"
 #include "lib/trace/trace.h"
 
@@ -28,6 +30,11 @@ struct Passage {
   bool is_passed_by = false, is_shift = true;
   bool is_reached = false;            // by the ray
   Vec3<double> position{}, direction{};  // of the ray before, in the frame of the surface before
+  std::optional<double> gradient_steps{};
+  const scene::Wavelength* wavelength = nullptr;
+  gradient_index::Tolerance tolerance{};
+
+  bool is_in_gradient() const { return wavelength->has_gradient_at(number); }
 
   Deflection deflection() const { return trace::deflection_at(*surface, index_before, index_after); }
 };
@@ -46,6 +53,25 @@ trace::RayBatch sample_ray(const scene::Scene& open) {
       if (first.size() == 0) first = launched;
     }
   return first;
+}
+
+// Of some rays of every field at the first wavelength, in the gap before a surface.
+std::optional<double> mean_gradient_steps(const scene::Scene& open, int number) {
+  const scene::Wavelength& wavelength = open.wavelengths.front();
+  const scene::GradientGap* gap = wavelength.gradient(number - 1);
+  if (!gap) return std::nullopt;
+  int count = 0, steps = 0;
+  for (const scene::Field& field : open.fields) {
+    trace::RayBatch rays = trace::launch(open, field, wavelength.index.front(), trace::pupil_points({trace::PatternKind::hexapolar}, 60), false);
+    for (int before = 1; before < number; ++before) trace_surface(open, wavelength, before, rays);
+    const scene::Surface& surface = open.surface(number);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (rays.ended[i] != 0) continue;
+      steps += trace::travel(surface, *gap, open.tolerance, surface.local_from_previous * rays.position(i), surface.local_from_previous.rotation * rays.direction(i)).steps;
+      ++count;
+    }
+  }
+  return count > 0 ? std::optional(static_cast<double>(steps) / count) : std::nullopt;
 }
 
 std::vector<Passage> passages_of(const scene::Scene& scene) {
@@ -68,6 +94,8 @@ std::vector<Passage> passages_of(const scene::Scene& scene) {
     has_passed = at.is_passed_by;
     at.is_reached = ray.ended[0] == 0;
     at.position = ray.position(0), at.direction = ray.direction(0);
+    at.wavelength = &scene.wavelengths.front(), at.tolerance = scene.tolerance;
+    at.gradient_steps = mean_gradient_steps(open, number);
     trace_surface(open, open.wavelengths.front(), number, ray);
     passages.push_back(at);
   }
@@ -87,6 +115,10 @@ Operations operations_of(const Passage& at, const Way& way) {
   const auto varying = [](const Vec3<double>& v) { return Vec3<Counted>{Counted::varying(v.x), Counted::varying(v.y), Counted::varying(v.z)}; };
   const trace::StepSetting setting = trace::StepSetting::of(*at.surface, at.number, at.index_before, at.index_after);
   const double shift = way.is_shift ? at.surface->local_from_previous.translation.z : -0.0;
+  if (at.is_in_gradient()) {
+    const trace::Ray<Counted> ray{varying(at.position), varying(at.direction), Counted::varying(0), 0};
+    return Counted::operations_of([&] { step_in_gradient(*at.surface, at.number, *at.wavelength, at.tolerance, entered(at.surface->local_from_previous, ray)); });
+  }
   return Counted::operations_of([&] {
     trace::Ray<Counted> ray{varying(at.position), varying(at.direction), Counted::varying(0), 0};
     if (!way.is_shift) ray = entered(at.surface->local_from_previous, ray);
@@ -111,6 +143,12 @@ Operations operations_of_passing_by(const Passage& at) {
   const Vec3<double>& d = at.direction;
   const Vec3<Counted> axis{0, 0, 1}, direction{Counted::varying(d.x), Counted::varying(d.y), Counted::varying(d.z)};
   return Counted::operations_of([&] { dot(axis, direction); });
+}
+
+std::string kernel_of(const Passage& at) {
+  const std::string shape = kernel_name(at.surface->shape);
+  if (at.gradient_steps) return fmt::format("{} in a gradient: {:.1f} steps", shape, *at.gradient_steps);
+  return at.is_in_gradient() ? shape + ", ray by ray" : shape;
 }
 
 constexpr std::size_t bytes_of_columns(bool has_opl) { return (has_opl ? 7 : 6) * sizeof(double) + sizeof(std::int32_t); }
@@ -278,7 +316,7 @@ class LeftOut {
     std::vector<int> numbers;
     Operations sum;
     for (const Passage& at : passages_) {
-      if (!is_so(at)) continue;
+      if (at.is_in_gradient() || !is_so(at)) continue;  // ray by ray nothing is left out
       numbers.push_back(at.number);
       if (at.is_reached) sum = sum + spared(at);
     }
@@ -299,7 +337,7 @@ Plan plan_of(const scene::CompileResult& compiled, const JobRequest& request) {
   Plan plan;
   plan.has_opl = request.want_wavefront;
   for (const Passage& at : passages) {
-    SurfacePlan one{at.number, at.is_passed_by ? "none: passed by" : kernel_name(at.surface->shape), {}, bytes_per_ray(at, plan.has_opl),
+    SurfacePlan one{at.number, at.is_passed_by ? "none: passed by" : kernel_of(at), {}, at.gradient_steps, bytes_per_ray(at, plan.has_opl),
                     at.is_passed_by ? 0 : data_bytes(at.surface->shape)};
     if (at.is_reached) one.operations = at.is_passed_by ? operations_of_passing_by(at) : operations_of(at, way_of(at, plan.has_opl));
     plan.surfaces.push_back(std::move(one));

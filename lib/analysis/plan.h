@@ -24,6 +24,7 @@ struct SurfacePlan {
   int surface = 0;                                 // its number
   std::string kernel;
   std::optional<numerics::Operations> operations;  // of a ray; none where no ray gets there
+  std::optional<double> gradient_steps;            // of the integration through the medium before it, mean over the sample; none: rays are straight
   std::size_t bytes_per_ray = 0;                   // of the columns that are read and written; they stay in the first-level cache
   std::size_t data_bytes = 0;                      // of the surface's own numbers: coefficients, facets, patches
 };

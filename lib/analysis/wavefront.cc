@@ -64,6 +64,8 @@ ReferenceResult reference_sphere(const scene::Scene& scene, const scene::Wavelen
   const scene::FirstOrder paraxial = first_order(scene, wavelength, nan);
   const double exit_pupil_z = paraxial.exit_pupil.z;
   if (!(std::abs(paraxial.image_z) <= afocal_distance)) return {{}, exit_pupil_z, "the image is afocal"};
+  if (wavelength.gradient(scene.surface_count() - 1))
+    return {{}, exit_pupil_z, "the image ends a gradient-index medium, which has no one index for a reference sphere: end the medium at a surface before it"};
   RayBatch chief = launch(scene, field, wavelength.index.front(), std::vector<trace::PupilPoint>{{0, 0}});
   trace::trace(without_obscurations(scene), wavelength, chief);
   if (chief.ended[0] != 0)

@@ -25,13 +25,15 @@ ordered_json operations_json(const std::optional<Operations>& operations) {
 
 ordered_json plan_json(const Report& report) {
   ordered_json json{{"operations_include_opl", report.plan->has_opl}, {"surfaces", ordered_json::array()}, {"left_out", ordered_json::array()}};
-  for (const analysis::SurfacePlan& one : report.plan->surfaces)
+  for (const analysis::SurfacePlan& one : report.plan->surfaces) {
     json["surfaces"].push_back({{"surface", one.surface},
                                 {"name", report.surface_names[static_cast<std::size_t>(one.surface - 1)]},
                                 {"kernel", one.kernel},
                                 {"operations_per_ray", operations_json(one.operations)},
                                 {"bytes_per_ray", one.bytes_per_ray},
                                 {"data_bytes", one.data_bytes}});
+    if (one.gradient_steps) json["surfaces"].back()["gradient_steps"] = *one.gradient_steps;
+  }
   for (const analysis::Omission& one : report.plan->left_out)
     json["left_out"].push_back({{"what", one.what}, {"why", one.why}, {"saves", one.saves}});
   return json;

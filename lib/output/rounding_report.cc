@@ -85,10 +85,10 @@ std::string what_bounds_say(const study::Rounding& rounding) {
   const double part = rounding.surfaces[number].of_bound;
   std::string text;
   if (known > 0)
-    text = part == 0   ? "no surface loses anything\n"
+    text = part == 0   ? fmt::format("no surface{} loses anything\n", unknown > 0 ? " of which a bound is known" : "")
            : part <= 1 ? fmt::format("every loss is explained by the geometry: at most {:.2g} of what it can do to a ray, at surface {}\n", part, number)
                        : fmt::format("surface {} loses {:.2g} times what the geometry can explain: please report this system\n", number, part);
-  if (unknown > 0) text += fmt::format("of {} hit{} no bound is known: rounding moves them by as much as the surface turns within\n", unknown, unknown == 1 ? "" : "s");
+  if (unknown > 0) text += fmt::format("of {} hit{} no bound is known: rounding moves them by as much as the surface turns within, or a gradient-index medium is before or behind the surface\n", unknown, unknown == 1 ? "" : "s");
   return text;
 }
 

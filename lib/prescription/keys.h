@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "lib/gradient_index/leap.h"
 #include "lib/medium/medium.h"
 #include "lib/numerics/key.h"
 
@@ -58,6 +59,10 @@ inline constexpr std::array system_keys{
     numerics::Key{.name = "object",
                   .kind = numerics::ValueKind::mapping,
                   .meaning = "what stands before surface 1; air up to infinity unless given"},
+    numerics::Key{.name = "tolerance_mm",
+                  .meaning = "what one step of a ray in a gradient-index medium may be off by, in place and optical path",
+                  .range = {.low = 1e-15, .high = 1e-3, .reason = "below, rounding is larger; above, the ray is not followed"},
+                  .fallback = gradient_index::default_tolerance_mm},
     numerics::Key{.name = "surfaces",
                   .kind = numerics::ValueKind::list,
                   .meaning = "the surfaces in the order of the light; the last one is the image surface",
@@ -103,7 +108,7 @@ inline constexpr std::array surface_keys{
     numerics::Key{
         .name = "medium",
         .kind = numerics::ValueKind::medium,
-        .meaning = "what follows the surface: a name, {index: ...}, {nd: ..., vd: ...} or mirror; air unless given"},
+        .meaning = "what follows the surface: a name, {index: ...}, {nd: ..., vd: ...}, {grin: ...} or mirror; air unless given"},
     numerics::Key{.name = "semi_diameter_mm",
                   .meaning = "rays beyond it are clipped",
                   .range = numerics::positive,
@@ -119,17 +124,26 @@ inline constexpr std::array surface_keys{
 
 inline constexpr numerics::Range index_range{.low = medium::least_index, .high = medium::largest_index, .reason = "beyond, directions lose their digits from one medium to the next"};
 
-// Either index, or nd with vd.
+// Either index, or nd with vd, or grin.
 inline constexpr std::array medium_keys{
+    numerics::Key{.name = "grin", .kind = numerics::ValueKind::mapping, .meaning = "a gradient-index medium, by one of its forms"},
     numerics::Key{.name = "index", .meaning = "refractive index at every wavelength", .range = index_range},
     numerics::Key{.name = "nd", .meaning = "refractive index at 587.5618 nm", .range = index_range},
     numerics::Key{.name = "vd", .meaning = "Abbe number", .range = numerics::positive}};
 
-// The shapes of lib/surface/shapes.h.
+// Beside one form of lib/gradient_index/forms.h: how the index of that changes with the wavelength. Both or none.
+inline constexpr std::array gradient_keys{
+    numerics::Key{.name = "dispersion",
+                  .kind = numerics::ValueKind::medium,
+                  .meaning = "a medium with whose index that of the form rises and falls; unless given it is the same at every wavelength"},
+    numerics::Key{.name = "reference_nm", .meaning = "the wavelength of the form's index", .range = wavelengths_nm_range}};
+
+// The shapes of lib/surface/shapes.h, the gradients of lib/gradient_index/forms.h.
 struct ShapeKind {
   std::string_view name;
   KeyTable keys;
 };
 const std::vector<ShapeKind>& shape_kinds();
+const std::vector<ShapeKind>& gradient_kinds();
 
 }  // namespace sagitta::prescription

@@ -3,10 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <vector>
 
+#include "lib/prescription/keys.h"
 #include "lib/prescription/material_search.h"
 #include "lib/prescription/search_path.h"
+#include "lib/prescription/shape_reader.h"
 #include "lib/prescription/value_reader.h"
 
 namespace sagitta::prescription {
@@ -14,6 +18,10 @@ namespace sagitta::prescription {
 MediumReader::Read MediumReader::read(const YamlNode* node) {
   if (!node) return {};
   if (node->kind == YamlNode::Kind::scalar && node->text == "mirror") return {.is_mirror = true};
+  if (const auto grin = node->find("grin"); grin && node->kind == YamlNode::Kind::mapping) {
+    if (node->entries.size() > 1) findings_.error(node->place, "medium must have nothing beside 'grin'", "dispersion and reference_nm stand inside it");
+    return read_gradient(*grin);
+  }
   uses_.push_back({node->kind == YamlNode::Kind::mapping ? read_inline(*node) : read_name(*node), node->place});
   return {uses_.back().medium};
 }
@@ -34,7 +42,7 @@ void MediumReader::read_catalogs(const YamlNode* node) {
 
 medium::Medium MediumReader::read_name(const YamlNode& node) {
   if (node.kind != YamlNode::Kind::scalar || node.text.empty()) {
-    refuse(node, "medium", "a name, {index: ...}, {nd: ..., vd: ...} or mirror", findings_);
+    refuse(node, "medium", "a name, {index: ...}, {nd: ..., vd: ...}, {grin: ...} or mirror", findings_);
     return medium::air();
   }
   if (!node.quoted && parse_number(node.text).ok) {
@@ -62,9 +70,36 @@ medium::Medium MediumReader::read_inline(const YamlNode& node) {
   const auto index = section.number("index"), nd = section.number("nd"), vd = section.number("vd");
   const bool has_index = section.find("index"), has_nd = section.find("nd"), has_vd = section.find("vd");
   if (has_index ? has_nd || has_vd : !(has_nd && has_vd))
-    findings_.error(node.place, "medium must have either 'index', or both 'nd' and 'vd'");
+    findings_.error(node.place, "medium must have either 'index', or both 'nd' and 'vd', or 'grin'");
   if (index) return medium::constant(fmt::format("index {}", *index), *index);
   return nd && vd ? medium::from_nd_vd(*nd, *vd) : medium::air();
+}
+
+// The names of the forms, as keys beside those that any of them may have.
+MediumReader::Read MediumReader::read_gradient(const YamlNode& node) {
+  std::vector<numerics::Key> forms;
+  for (const ShapeKind& kind : gradient_kinds())
+    forms.push_back({.name = kind.name, .kind = numerics::ValueKind::mapping, .meaning = "form of the gradient"});
+  std::vector<numerics::Key> keys = forms;
+  keys.insert(keys.end(), gradient_keys.begin(), gradient_keys.end());
+  const Section section(node, "grin", keys, findings_);
+  Read result{.medium = medium::constant("gradient", 1), .gradient = GradientMedium{}};
+  if (const YamlNode::Entry* form = section.one_of(forms, true)) {
+    const auto& kind = *std::find_if(gradient_kinds().begin(), gradient_kinds().end(), [&](const ShapeKind& one) { return one.name == form->key; });
+    result.gradient->kind = kind.name;
+    result.gradient->parameters = read_parameters(Section(*form->value, form->key, kind.keys, findings_), kind.keys);
+  }
+  const YamlNode *dispersion = section.find("dispersion"), *reference = section.find("reference_nm");
+  if (!dispersion != !reference)
+    findings_.error(node.place, "grin must have both 'dispersion' and 'reference_nm', or neither", "the form's index is that at reference_nm");
+  result.gradient->reference_nm = section.number("reference_nm").value_or(0);
+  if (!dispersion) return result;
+  const Read disperses_as = read(dispersion);
+  if (disperses_as.is_mirror || disperses_as.gradient) refuse(*dispersion, "dispersion", "a medium of one index at each wavelength", findings_);
+  else if (const double um = result.gradient->reference_nm / 1000; um > 0 && !(disperses_as.medium.index(um) > 0))
+    findings_.error(reference->place, fmt::format("{} has no index at reference_nm, {} nm", disperses_as.medium.name, result.gradient->reference_nm));
+  result.medium = disperses_as.medium;
+  return result;
 }
 
 }  // namespace sagitta::prescription

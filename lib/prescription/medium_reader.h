@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "lib/prescription/agf_reader.h"
 #include "lib/prescription/check.h"
 #include "lib/prescription/diagnostics.h"
+#include "lib/prescription/model.h"
 #include "lib/prescription/yaml_tree.h"
 
 namespace sagitta::prescription {
@@ -21,8 +23,9 @@ class MediumReader {
   struct Read {
     medium::Medium medium = medium::air();  // air too where there was an error
     bool is_mirror = false;
+    std::optional<GradientMedium> gradient{};  // if it is one, `medium` has its dispersion
   };
-  // A name, {index: ...}, {nd: ..., vd: ...} or mirror; a null pointer is the default, air.
+  // A name, {index: ...}, {nd: ..., vd: ...}, {grin: ...} or mirror; a null pointer is the default, air.
   Read read(const YamlNode* node);
 
   // The catalogues in which names are looked up, from a list of files; a null pointer: none. To be called before read().
@@ -34,6 +37,7 @@ class MediumReader {
  private:
   medium::Medium read_name(const YamlNode& node);
   medium::Medium read_inline(const YamlNode& node);
+  Read read_gradient(const YamlNode& node);
 
   Findings& findings_;
   std::vector<AgfCatalog> catalogs_;

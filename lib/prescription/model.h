@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "lib/gradient_index/leap.h"
 #include "lib/medium/medium.h"
 #include "lib/numerics/vec3.h"
 #include "lib/prescription/diagnostics.h"
@@ -48,12 +49,21 @@ struct Shape {
   Place place;
 };
 
+// A gradient-index medium: its form and what that needs. Its `index` is that of reference_nm; at another wavelength it is larger by as much as the index of the
+// medium is that stands beside it.
+struct GradientMedium {
+  std::string kind;
+  Parameters parameters;
+  double reference_nm = 0;  // 0: the index is the same at every wavelength
+};
+
 struct Surface {
   std::string name;  // "" where none was given
   Shape shape;
   bool stop = false;
   double thickness_mm = 0;
   std::optional<medium::Medium> medium;  // what follows; none: a mirror
+  std::optional<GradientMedium> gradient;  // if this follows, then `medium` has its dispersion
   double semi_diameter_mm = std::numeric_limits<double>::infinity();
   double inner_semi_diameter_mm = 0;
   numerics::Vec3<double> decenter_mm{}, tilt_deg{};
@@ -73,6 +83,7 @@ struct Model {
   Fields fields;
   Object object;
   std::vector<Surface> surfaces;  // the last one is the image surface
+  double tolerance_mm = gradient_index::default_tolerance_mm;
   Place place;
 
   double primary_wavelength_nm() const { return primary_nm ? *primary_nm : wavelengths_nm.front(); }

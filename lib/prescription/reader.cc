@@ -87,7 +87,7 @@ Object read_object(const YamlNode& node, MediumReader& media, Findings& findings
   if (section.find("distance_mm"))
     object.distance_mm = section.number("distance_mm").value_or(std::numeric_limits<double>::quiet_NaN());
   const MediumReader::Read before = media.read(section.find("medium"));
-  if (before.is_mirror) refuse(*section.find("medium"), "medium of the object", "a medium", findings);
+  if (before.is_mirror || before.gradient) refuse(*section.find("medium"), "medium of the object", before.gradient ? "a medium of one index" : "a medium", findings);
   object.medium = before.medium;
   return object;
 }
@@ -109,6 +109,7 @@ Model read_model(const YamlNode& root, const std::vector<Document>& documents, F
   if (const YamlNode* node = section.find("fields")) model.fields = read_fields(*node, findings);
   if (const YamlNode* node = section.find("object")) model.object = read_object(*node, media, findings);
   if (const YamlNode* node = section.find("surfaces")) model.surfaces = read_surfaces(*node, media, findings);
+  if (section.find("tolerance_mm")) model.tolerance_mm = section.number("tolerance_mm").value_or(model.tolerance_mm);
   check_model(model, media.uses(), findings);
   return model;
 }

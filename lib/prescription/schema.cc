@@ -63,7 +63,7 @@ ordered_json with_one_of(ordered_json json, KeyTable alternatives) {
 
 ordered_json medium_schema() {
   ordered_json described = mapping(medium_keys);
-  described["oneOf"] = {required("index"), {{"required", {"nd", "vd"}}}};
+  described["oneOf"] = {required("index"), {{"required", {"nd", "vd"}}}, required("grin")};
   return {{"anyOf", {{{"type", "string"}, {"description", "name of a file of materials/ or beside the prescription, air, or mirror"}, {"examples", {"air", "mirror"}}}, described}}};
 }
 
@@ -89,10 +89,23 @@ ordered_json parameters_schema() {
   return {{"type", "object"}, {"propertyNames", {{"pattern", "^[A-Za-z][A-Za-z0-9_]{0,63}$"}}}, {"additionalProperties", literal(numerics::any_number)}};
 }
 
+// Exactly one form, and what it may have beside it.
+ordered_json gradient_schema() {
+  ordered_json json = mapping(gradient_keys);
+  for (const ShapeKind& form : gradient_kinds()) {
+    json["properties"][std::string(form.name)] = mapping(form.keys);
+    json["properties"][std::string(form.name)]["description"] = "form of the gradient";
+    json["oneOf"].push_back(required(form.name));
+  }
+  json["dependencies"] = {{"dispersion", {"reference_nm"}}, {"reference_nm", {"dispersion"}}};
+  return json;
+}
+
 // A mapping or a list of its own kind, by its name.
 ordered_json special(const Key& key) {
   if (key.name == "parameters") return parameters_schema();
   if (key.name == "catalogs") return list_of({{"type", "string"}, {"minLength", 1}}, 1);
+  if (key.name == "grin") return gradient_schema();
   if (key.name == "aperture") return with_one_of(mapping(aperture_keys), aperture_keys);
   if (key.name == "fields") return with_one_of(mapping(field_keys), field_keys);
   if (key.name == "angles_deg" || key.name == "object_heights_mm") return list_of(tuple_of(key.range, 2), 1);

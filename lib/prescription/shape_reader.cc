@@ -18,6 +18,7 @@ using numerics::ValueKind;
 // The index range of a key, which may depend on a choice that was read before it.
 numerics::IndexRange index_range(const Key& key, const Parameters& parameters) {
   if (!key.indices) return {};
+  if (key.indexed_by.empty()) return key.indices({});
   const auto choice = parameters.texts.find(key.indexed_by);
   return choice == parameters.texts.end() ? numerics::IndexRange{} : key.indices(choice->second);
 }
@@ -96,10 +97,15 @@ std::shared_ptr<const PointCloud> read_points(const std::string& key, const Para
 
 }  // namespace
 
+Parameters read_parameters(const Section& section, KeyTable keys) {
+  Parameters parameters;
+  for (const Key& key : keys) read_value(section, key, parameters);
+  return parameters;
+}
+
 Shape read_shape(const ShapeKind& kind, const YamlNode& node, KnownClouds& clouds, Findings& findings) {
   const Section section(node, std::string(kind.name), kind.keys, findings);
-  Shape shape{.kind = std::string(kind.name), .parameters = {}, .cloud = nullptr, .place = node.place};
-  for (const Key& key : kind.keys) read_value(section, key, shape.parameters);
+  Shape shape{.kind = std::string(kind.name), .parameters = read_parameters(section, kind.keys), .cloud = nullptr, .place = node.place};
   for (const Key& key : kind.keys)
     if (key.kind == ValueKind::file)
       shape.cloud = read_points(std::string(key.name), shape.parameters, clouds, findings);

@@ -24,6 +24,10 @@ struct KnownCloud {
 };
 using KnownClouds = std::map<std::tuple<std::string, std::string, bool>, KnownCloud>;
 
+// The values of a mapping, after its table of keys.
+class Section;
+Parameters read_parameters(const Section& section, KeyTable keys);
+
 // A file that the shape names is looked for first beside the file in which the name stands.
 Shape read_shape(const ShapeKind& kind, const YamlNode& node, KnownClouds& clouds, Findings& findings);
 

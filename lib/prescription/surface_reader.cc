@@ -71,6 +71,7 @@ Surface read_surface(const Section& section, bool is_last, MediumReader& media, 
   check_thickness(section, surface, is_last, findings);
   const MediumReader::Read after = media.read(section.find("medium"));
   if (!after.is_mirror) surface.medium = after.medium;
+  surface.gradient = after.gradient;
   if (const YamlNode* given = section.find("medium"); is_last && given) {
     if (after.is_mirror)
       findings.error(given->place, "the last surface cannot be a mirror",

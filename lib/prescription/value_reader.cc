@@ -176,9 +176,9 @@ std::optional<std::vector<std::pair<int, double>>> read_indexed(const YamlNode& 
   std::map<int, double> values;
   bool all_legal = true;
   const auto add = [&](std::optional<int> index, const std::string& key, const Place& place, const YamlNode& value) {
-    const bool is_legal = index && *index >= indices.first && *index <= indices.last;
+    const bool is_legal = index && indices.contains(*index);
     if (!is_legal)
-      findings.error(place, fmt::format("an index of {} must be a whole number from {} to {}, not '{}'", label,
+      findings.error(place, fmt::format("an index of {} must be {} number from {} to {}, not '{}'", label, indices.step == 2 ? "an even" : "a whole",
                                         indices.first, indices.last, excerpt(key)));
     const auto number = read_number(value, fmt::format("{} of index {}", label, excerpt(key)), range, findings);
     const bool is_new = is_legal && number && values.emplace(*index, *number).second;
@@ -190,7 +190,7 @@ std::optional<std::vector<std::pair<int, double>>> read_indexed(const YamlNode& 
       add(parse_index(entry.key), entry.key, entry.key_place, *entry.value);
   } else if (node.kind == YamlNode::Kind::sequence) {
     for (std::size_t i = 0; i < node.items.size(); ++i) {
-      const int index = indices.first + static_cast<int>(i);
+      const int index = indices.first + indices.step * static_cast<int>(i);
       add(index, std::to_string(index), node.items[i]->place, *node.items[i]);
     }
   } else {

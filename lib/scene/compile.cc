@@ -9,6 +9,7 @@
 
 #include "lib/scene/cloud_fit.h"
 #include "lib/scene/compile_cloud.h"
+#include "lib/scene/compile_gradient.h"
 #include "lib/scene/triangulate.h"
 
 namespace sagitta::scene {
@@ -25,8 +26,9 @@ Wavelength compile_wavelength(const Model& model, double wavelength_nm, Findings
   for (const auto& surface : model.surfaces) {
     // Behind a mirror is what was before it; behind the image surface nothing is traced.
     const bool same = surface.is_mirror() || &surface == &model.surfaces.back();
-    const double index = same ? result.index.back() : surface.medium->index(um);
-    if (!(index > 0) || !std::isfinite(index))
+    const bool is_gradient = same ? std::isnan(result.index.back()) : surface.gradient.has_value();
+    const double index = is_gradient ? std::numeric_limits<double>::quiet_NaN() : same ? result.index.back() : surface.medium->index(um);
+    if (!is_gradient && !(index > 0 && std::isfinite(index)))
       findings.error(surface.place, fmt::format("the medium has no index at {:g} nm", wavelength_nm));
     result.index.push_back(index);
   }
@@ -182,6 +184,7 @@ CompileResult compile_for(const Model& model, const Beam& beam) {
   if (findings.has_errors()) return result;
 
   place_surfaces(model, scene);
+  compile_gradients(model, scene, findings);
   result.dispersive_gaps = count_dispersive_gaps(model);
   scene.object.z = -model.object.distance_mm;
   scene.fields = compile_fields(model.fields);
@@ -191,7 +194,7 @@ CompileResult compile_for(const Model& model, const Beam& beam) {
     const prescription::Surface& given = model.surfaces[i];
     const int number = static_cast<int>(i) + 1;
     Surface& surface = scene.surfaces[i];
-    if (given.shape.cloud && beam && may_be_a_part(given.shape)) {
+    if (given.shape.cloud && beam && may_be_a_part(given.shape) && !scene.primary.gradient(number - 1)) {  // whose lines are straight
       surface.shape = surface::Facets{};
       clouds[i] = given.shape.cloud;
       waiting.push_back(number);

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+
+#include "lib/gradient_index/paraxial.h"
 
 namespace sagitta::scene {
 namespace {
@@ -25,30 +28,47 @@ struct ParaxialRay {
   }
 };
 
-// The indices of the gaps with the sign of the direction of travel.
-std::vector<double> signed_indices(const Scene& scene, const Wavelength& wavelength) {
-  std::vector<double> result = wavelength.index;
+// A gap along the axis. Indices have the sign of the direction of travel.
+struct AxialGap {
+  double index_start, index_end;                          // behind the surface before it, before the surface behind it
+  std::optional<gradient_index::ParaxialTransfer> curved{};  // in a gradient
+};
+
+std::vector<AxialGap> axial_gaps(const Scene& scene, const Wavelength& wavelength) {
+  std::vector<AxialGap> gaps{{wavelength.index.front(), wavelength.index.front()}};
   double direction = 1;
-  for (std::size_t i = 0; i < scene.surfaces.size(); ++i) {
-    if (scene.surfaces[i].mirror) direction = -direction;
-    result[i + 1] *= direction;
+  for (int number = 1; number <= scene.surface_count(); ++number) {
+    if (scene.surface(number).mirror) direction = -direction;
+    const double index = direction * wavelength.index[static_cast<std::size_t>(number)];
+    gaps.push_back({index, index});
+    const GradientGap* gradient = wavelength.gradient(number);
+    if (!gradient) continue;
+    const double thickness = scene.surface(number + 1).axis_z - scene.surface(number).axis_z;
+    const auto transfer = paraxial_transfer(gradient->form, gradient->axial_shift, thickness, direction);
+    gaps.back() = {direction * transfer.index_start, direction * transfer.index_end, transfer};
   }
-  return result;
+  return gaps;
 }
 
 class Paraxial {
  public:
-  Paraxial(const Scene& scene, const Wavelength& wavelength) : scene_(scene), index_(signed_indices(scene, wavelength)) {}
+  Paraxial(const Scene& scene, const Wavelength& wavelength) : scene_(scene), gaps_(axial_gaps(scene, wavelength)) {}
 
-  double index(int gap) const { return index_[static_cast<std::size_t>(gap)]; }
-  bool acts(int number) const { return !scene_.surface(number).image && index(number) != index(number - 1); }
+  double index_before(int number) const { return gap(number - 1).index_end; }
+  double index_behind(int number) const { return scene_.surface(number).image ? index_before(number) : gap(number).index_start; }
+  // The last one that turns rays or ends a gap in which they are turned.
+  int last_acting() const {
+    int last = scene_.surface_count();
+    while (last > 1 && index_behind(last) == index_before(last) && !gap(last - 1).curved) --last;
+    return last;
+  }
 
   // (1), from just before surface `first` to just behind surface `last`.
   ParaxialRay through(ParaxialRay ray, int first, int last) const {
     for (int i = first; i <= last; ++i) {
       if (i > first) ray = transferred(ray, i);
       if (scene_.surface(i).image) continue;
-      const double power = (index(i) - index(i - 1)) * scene_.surface(i).vertex_curvature;
+      const double power = (index_behind(i) - index_before(i)) * scene_.surface(i).vertex_curvature;
       ray.v -= power * ray.y;
       ray.v_terms += std::abs(power) * ray.y_terms;
     }
@@ -61,13 +81,18 @@ class Paraxial {
   }
 
  private:
+  const AxialGap& gap(int number) const { return gaps_[static_cast<std::size_t>(number)]; }
   ParaxialRay transferred(ParaxialRay ray, int to) const {
-    const double rise = (scene_.surface(to).axis_z - scene_.surface(to - 1).axis_z) / index(to - 1) * ray.v;
+    if (const auto& by = gap(to - 1).curved) {
+      const double y_terms = std::abs(by->y_y) * ray.y_terms + std::abs(by->y_v) * ray.v_terms, v_terms = std::abs(by->v_y) * ray.y_terms + std::abs(by->v_v) * ray.v_terms;
+      return {by->y_y * ray.y + by->y_v * ray.v, by->v_y * ray.y + by->v_v * ray.v, y_terms, v_terms};
+    }
+    const double rise = (scene_.surface(to).axis_z - scene_.surface(to - 1).axis_z) / index_before(to) * ray.v;
     return {ray.y + rise, ray.v, std::max(ray.y_terms, std::abs(ray.y) + std::abs(rise)), ray.v_terms};
   }
 
   const Scene& scene_;
-  std::vector<double> index_;
+  std::vector<AxialGap> gaps_;
 };
 
 // Where a ray with (y, V) at z = 0 crosses the axis in a medium of index n; infinite if it never does.
@@ -79,9 +104,8 @@ double crossing(const ParaxialRay& ray, double index) {
 
 FirstOrder first_order(const Scene& scene, const Wavelength& wavelength, double entrance_pupil_semi_diameter) {
   const Paraxial paraxial(scene, wavelength);
-  int last = scene.surface_count() - 1;  // the last acting surface
-  while (last > 1 && !paraxial.acts(last)) --last;
-  const double n = paraxial.index(0), n_after = paraxial.index(last);
+  const int last = paraxial.last_acting();
+  const double n = paraxial.index_before(1), n_after = paraxial.index_behind(last);
   const double z_first = scene.surface(1).axis_z, z_last = scene.surface(last).axis_z;
 
   FirstOrder result{};
@@ -110,7 +134,7 @@ FirstOrder first_order(const Scene& scene, const Wavelength& wavelength, double 
   const int from = scene.stop, to = last < from ? from : last;
   const ParaxialRay through_centre = paraxial.through({0, 1}, from, to);
   const double z_to = scene.surface(to).axis_z;
-  result.exit_pupil.z = z_to + crossing(through_centre, paraxial.index(to));
+  result.exit_pupil.z = z_to + crossing(through_centre, paraxial.index_behind(to));
   result.exit_pupil.magnification = 1 / through_centre.slope();
   result.exit_pupil.semi_diameter = std::abs(entrance_pupil_semi_diameter * A * result.exit_pupil.magnification);
 
@@ -126,7 +150,7 @@ double marginal_height(const Scene& scene, const Wavelength& wavelength, const P
   ParaxialRay ray{entrance_pupil.semi_diameter, 0};
   if (!scene.object.at_infinity()) {
     const double slope = entrance_pupil.semi_diameter / (entrance_pupil.z - scene.object.z);
-    ray = {slope * (scene.surface(1).axis_z - scene.object.z), slope * paraxial.index(0)};
+    ray = {slope * (scene.surface(1).axis_z - scene.object.z), slope * paraxial.index_before(1)};
   }
   return std::abs(paraxial.up_to(ray, 1, surface_number).y);
 }

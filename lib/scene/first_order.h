@@ -5,6 +5,8 @@
 // The state of a paraxial ray is (y, V), V = n u the optical direction; n is negative in gaps that light crosses toward
 // -z (after an odd number of mirrors), as are their thicknesses t. With c the vertex curvature:
 //   refraction and reflection  V' = V - (n' - n) c y,       transfer  y' = y + (t/n) V                              (1)
+// A gap with a gradient-index medium has a matrix of its own (gradient_index/paraxial.h). Where the image surface ends such a gap, the image space is taken to go on with
+// the index there on the axis.
 // The product from the first vertex to behind the last acting surface is the matrix [a b; -P d], P the power:
 //   effective focal length 1/P,   rear focal length n'/P,   front focal length -n/P
 //   F' = last vertex + n' a/P,   F = first vertex - n d/P                                                            (2)

@@ -8,8 +8,11 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 #include <vector>
 
+#include "lib/gradient_index/forms.h"
+#include "lib/gradient_index/leap.h"
 #include "lib/numerics/arena.h"
 #include "lib/numerics/rigid_transform.h"
 #include "lib/surface/shapes.h"
@@ -37,10 +40,25 @@ struct Surface {
   }
 };
 
+// The medium of a gap in which rays are curved. Behind a mirror it is the one before it.
+struct GradientGap {
+  gradient_index::Form form;
+  int follows = 0;                                         // the surface whose frame its places are in
+  numerics::RigidTransform<double> medium_from_surface{};  // from the frame of the surface before the gap
+  double axial_shift = 0;                                  // what z is larger by in the medium's frame, both frames undisturbed
+};
+
 // The indices of all gaps at one wavelength.
 struct Wavelength {
   double wavelength_um = 0;
-  std::vector<double> index;  // index[i] of gap i, positive
+  std::vector<double> index;            // index[i] of gap i, positive; NaN in a gradient, which has more than one
+  std::map<int, GradientGap> gradients{};  // by gap
+
+  const GradientGap* gradient(int gap) const {
+    const auto found = gradients.find(gap);
+    return found == gradients.end() ? nullptr : &found->second;
+  }
+  bool has_gradient_at(int surface_number) const { return gradients.contains(surface_number - 1) || gradients.contains(surface_number); }
 };
 
 struct Object {
@@ -70,6 +88,7 @@ struct Scene {
   Object object;
   LaunchPupil pupil;
   int stop = 1;  // number of the stop surface
+  gradient_index::Tolerance tolerance{};  // of rays in gradients
   numerics::Arena arena;
 
   int surface_count() const { return static_cast<int>(surfaces.size()); }

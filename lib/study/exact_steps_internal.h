@@ -35,6 +35,10 @@ struct View {
 
   // Of a ray that has not ended.
   ExactStep look(int number, const ExactRay& ray) const {
+    if (wavelength.has_gradient_at(number)) {
+      const ThroughGradient<Exact> step = through_gradient(scene.surface(number), number, wavelength, ray);
+      return {step.entering.position, step.entering.direction, step.crossing, step.behind};
+    }
     ExactStep result;
     result.behind = through(scene.surface(number), number, index_before(number), index_behind(number), ray, [&](const Vec3<Exact>& p, const Vec3<Exact>& d) {
       result.start = p, result.direction = d;

@@ -192,6 +192,7 @@ std::string cause_at(const View& view, int number, const ExactRay& before, doubl
   const double cosine_behind = step.behind.ended == 0 ? size_of(Exact(dot(step.behind.direction, crossing.normal) / length)) : 0;
   const surface::Facets* facets = facets_in(surface.shape);
   const AtFacet at = facets ? at_facet(*facets, crossing.point) : AtFacet{};
+  if (view.wavelength.gradient(number - 1)) return "the tolerance in a gradient, and many operations";
   if (at.is_on_edge && !std::holds_alternative<surface::Patches>(surface.shape)) return "edge of a facet";
   const double mu = view.index_before(number) / view.index_behind(number);
   std::vector<Factor> factors{{"near-grazing incidence", 1 / cosine},

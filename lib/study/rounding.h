@@ -20,6 +20,9 @@
 //   strong curvature |c| scale;  ill-conditioned facet 1/sin(its smallest angle);
 //   radial functions that cancel, sum of their sizes/scale;  edge of a facet, within rounding, where the slope jumps;  index ratio near 1, where nothing else is to blame.
 //
+// A ray in a gradient-index medium is exact to 1e-25 mm here; what the tracer's tolerance leaves of it is an error of its own, at the surface that ends the medium. No bound is
+// known of that.
+//
 // Bounds: what rounding can do at most to one ray at one surface, from the counts of roundings and the geometry at that ray's own crossing
 // (rounding_bound_internal.h: distances, cosines before and behind, curvatures, the sizes of the terms of the surface's equation). An own
 // error beyond its bound is not the geometry's doing: it is a fault of the tracer, or of the bound.

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "lib/surface/refraction.h"
-#include "lib/trace/step.h"
+#include "lib/trace/gradient_step.h"
 
 namespace sagitta::study {
 
@@ -20,18 +20,12 @@ struct Path {
   T opl{};                 // likewise
 };
 
-template <class T>
-numerics::RigidTransform<T> transform_cast(const numerics::RigidTransform<double>& a) {
-  using numerics::vec3_cast;
-  return {{vec3_cast<T>(a.rotation.row_x), vec3_cast<T>(a.rotation.row_y), vec3_cast<T>(a.rotation.row_z)}, vec3_cast<T>(a.translation)};
-}
-
 // A ray in the frame of the surface before (before the first: global) goes on into the surface's and through it, if it has not ended.
 // `meet(position, direction)` gives the crossing. All doubles are taken as exact.
 template <class T, class Meet>
 Path<T> through(const scene::Surface& surface, int number, double index_before, double index_after, const Path<T>& ray, const Meet& meet) {
   if (ray.ended != 0) return ray;
-  const numerics::RigidTransform<T> local_from_previous = transform_cast<T>(surface.local_from_previous);
+  const numerics::RigidTransform<T> local_from_previous = trace::transform_cast<T>(surface.local_from_previous);
   Path<T> result{local_from_previous * ray.position, local_from_previous.rotation * ray.direction, 0, ray.opl};
   const surface::Crossing<T> crossing = meet(result.position, result.direction);
   const auto end = [&](Status status) {
@@ -54,6 +48,23 @@ Path<T> through(const scene::Surface& surface, int number, double index_before, 
   }
   result.direction = out;
   return result;
+}
+
+// The same at a surface with a gradient-index medium before or behind it. `entering` is the ray in the surface's frame; of its crossing nothing is left of the path. Steps of
+// the integration are exact to 1e-25 mm, or to the rounding of T: of a tracer's ray, what its tolerance leaves is among the errors.
+template <class T>
+struct ThroughGradient {
+  trace::Ray<T> entering;
+  surface::Crossing<T> crossing;
+  Path<T> behind;
+};
+template <class T>
+ThroughGradient<T> through_gradient(const scene::Surface& surface, int number, const scene::Wavelength& wavelength, const Path<T>& ray) {
+  constexpr gradient_index::Tolerance finest{1e-25};
+  const numerics::RigidTransform<T> local_from_previous = trace::transform_cast<T>(surface.local_from_previous);
+  const trace::Ray<T> entering{local_from_previous * ray.position, local_from_previous.rotation * ray.direction, ray.opl, T(0)};
+  const trace::GradientStep<T> step = trace::step_in_gradient(surface, number, wavelength, finest, entering);
+  return {entering, step.crossing, {step.behind.position, step.behind.direction, static_cast<std::int32_t>(static_cast<double>(step.behind.ended)), step.behind.opl}};
 }
 
 }  // namespace sagitta::study

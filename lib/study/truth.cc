@@ -62,6 +62,10 @@ void trace_exactly(const scene::Scene& scene, const scene::Wavelength& wavelengt
   for (int number = 1; number <= scene.surface_count(); ++number) {
     const bool is_studied = number == request.surface_number;
     const auto gap = static_cast<std::size_t>(number);
+    if (wavelength.has_gradient_at(number)) {
+      if (ray.ended == 0) ray = through_gradient(scene.surface(number), number, wavelength, ray).behind;
+      continue;
+    }
     ray = through(scene.surface(number), number, wavelength.index[gap - 1], wavelength.index[gap], ray, [&](const Vec3<T>& p, const Vec3<T>& d) {
       return meet(scene.surface(number).shape, is_studied ? request.roughness : nullptr, p, d);
     });
@@ -80,6 +84,8 @@ TrueRaysResult true_rays(const scene::Scene& scene, const scene::Wavelength& wav
     if (!std::visit([]<class S>(const S&) { return is_analytic<S>; }, scene.surface(number).shape))
       return {{}, fmt::format("surface {} is made of points ({}), which have no exact rays: it must be a plane, a conic or a zernike surface", number,
                               surface::kernel_name(scene.surface(number).shape))};
+  if (wavelength.has_gradient_at(request.surface_number))
+    return {{}, fmt::format("a gradient-index medium begins or ends at surface {}, and only surfaces between media of one index can be studied", request.surface_number)};
   const trace::RayBatch launched = trace::launch(scene, field, wavelength.index.front(), pupil, false);
   TrueRays rays{std::vector<TrueRay>(launched.size()), std::vector<TrueRay>(launched.size())};
   constexpr std::size_t block_size = 64;

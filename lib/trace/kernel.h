@@ -13,4 +13,8 @@ namespace sagitta::trace {
 void advance(const scene::Surface& surface, int surface_number, const numerics::RigidTransform<double>& local_from_previous, bool is_shift,
              double index_before, double index_after, const RayColumns& rays, int ray_count);
 
+// The same with a gradient-index medium before or behind the surface: ray by ray.
+void advance_in_gradient(const scene::Surface& surface, int surface_number, const numerics::RigidTransform<double>& local_from_previous,
+                         const scene::Wavelength& wavelength, const gradient_index::Tolerance& tolerance, const RayColumns& rays, int ray_count);
+
 }  // namespace sagitta::trace

@@ -40,17 +40,19 @@ void with_kind(StepKind kind, const Work& work) {
 }
 
 // The surface's plain numbers.
-struct StepSetting {
-  double index_before;
-  surface::IndexRatio<double> ratio;
-  double outer_squared, inner_squared;  // of the semi-diameters
+template <class Number>
+struct StepSettingOf {
+  Number index_before;
+  surface::IndexRatio<Number> ratio;
+  Number outer_squared, inner_squared;  // of the semi-diameters
   int surface_number;
 
-  static StepSetting of(const scene::Surface& surface, int surface_number, double index_before, double index_after) {
-    return {index_before, surface::IndexRatio<double>::of(index_before, index_after), surface.semi_diameter * surface.semi_diameter,
-            surface.inner_semi_diameter * surface.inner_semi_diameter, surface_number};
+  static StepSettingOf of(const scene::Surface& surface, int surface_number, const Number& index_before, const Number& index_after) {
+    const Number outer(surface.semi_diameter), inner(surface.inner_semi_diameter);
+    return {index_before, surface::IndexRatio<Number>::of(index_before, index_after), outer * outer, inner * inner, surface_number};
   }
 };
+using StepSetting = StepSettingOf<double>;
 
 template <class T>
 struct Ray {
@@ -86,8 +88,8 @@ void shift_along_z(double shift, Ray<T>& ray) {
 }
 
 // A ray that travels, from the place where it entered the surface's frame, by its crossing; others stay as they are.
-template <StepKind kind, bool has_unit_normals, class T>
-Ray<T> step(const StepSetting& setting, const Ray<T>& ray, const surface::Crossing<T>& crossing) {
+template <StepKind kind, bool has_unit_normals, class Number, class T>
+Ray<T> step(const StepSettingOf<Number>& setting, const Ray<T>& ray, const surface::Crossing<T>& crossing) {
   using numerics::all, numerics::select;
   using Verdict = surface::StatusIn<T>;
   const auto travels = ray.ended == T(0);

@@ -45,15 +45,26 @@ void end_parallel_rays(const numerics::RigidTransform<double>& local_from_rays, 
 
 double index_of(const scene::Wavelength& wavelength, int gap) { return wavelength.index[static_cast<std::size_t>(gap)]; }
 
-// The rays of a block to surface `number` and through it, or by it: then the way is longer.
+bool is_dummy(const scene::Scene& scene, const scene::Wavelength& wavelength, int number) {
+  return scene.surface(number).does_nothing(index_of(wavelength, number - 1), index_of(wavelength, number));
+}
+
+// The rays of a block to surface `number` and through it.
+void pass(const scene::Scene& scene, const scene::Wavelength& wavelength, int number, const numerics::RigidTransform<double>& local_from_rays, bool is_shift,
+          const RayColumns& rays, int ray_count) {
+  const scene::Surface& surface = scene.surface(number);
+  if (wavelength.has_gradient_at(number)) advance_in_gradient(surface, number, local_from_rays, wavelength, scene.tolerance, rays, ray_count);
+  else advance(surface, number, local_from_rays, is_shift, index_of(wavelength, number - 1), index_of(wavelength, number), rays, ray_count);
+}
+
+// Or by it: then the way is longer.
 void go_on(const scene::Scene& scene, const scene::Wavelength& wavelength, int number, const RayColumns& rays, int ray_count, Way& way) {
   const scene::Surface& surface = scene.surface(number);
-  const double index_before = index_of(wavelength, number - 1), index_after = index_of(wavelength, number);
   way.local_from_rays = way.has_passed ? surface.local_from_previous * way.local_from_rays : surface.local_from_previous;
   way.is_shift = surface.centred && (!way.has_passed || way.is_shift);
-  way.has_passed = surface.does_nothing(index_before, index_after);
+  way.has_passed = is_dummy(scene, wavelength, number);
   if (way.has_passed) end_parallel_rays(way.local_from_rays, number, rays, ray_count);
-  else advance(surface, number, way.local_from_rays, way.is_shift, index_before, index_after, rays, ray_count);
+  else pass(scene, wavelength, number, way.local_from_rays, way.is_shift, rays, ray_count);
 }
 
 int block_at(std::size_t from, const RayBatch& rays) { return static_cast<int>(std::min(block_size, rays.size() - from)); }
@@ -77,25 +88,21 @@ SurfaceBySurface::SurfaceBySurface(const scene::Scene& scene, const scene::Wavel
 
 const RayBatch& SurfaceBySurface::next() {
   ++number_;
-  const scene::Surface& surface = scene_.surface(number_);
-  const bool is_dummy = surface.does_nothing(index_of(wavelength_, number_ - 1), index_of(wavelength_, number_));
-  if (is_dummy) met_ = rays_;
+  const bool passes_by = is_dummy(scene_, wavelength_, number_);
+  if (passes_by) met_ = rays_;
   for (std::size_t block = 0; block < ways_.size(); ++block) {
     const std::size_t from = block * block_size;
     Way& way = ways_[block];
     go_on(scene_, wavelength_, number_, rays_.columns(from), block_at(from, rays_), way);
-    if (is_dummy)
-      advance(surface, number_, way.local_from_rays, way.is_shift, index_of(wavelength_, number_ - 1), index_of(wavelength_, number_),
-              met_.columns(from), block_at(from, rays_));
+    if (passes_by) pass(scene_, wavelength_, number_, way.local_from_rays, way.is_shift, met_.columns(from), block_at(from, rays_));
   }
-  return is_dummy ? met_ : rays_;
+  return passes_by ? met_ : rays_;
 }
 
 void trace_surface(const scene::Scene& scene, const scene::Wavelength& wavelength, int surface_number, RayBatch& rays) {
   const scene::Surface& surface = scene.surface(surface_number);
   for (std::size_t from = 0; from < rays.size(); from += block_size)
-    advance(surface, surface_number, surface.local_from_previous, surface.centred, index_of(wavelength, surface_number - 1),
-            index_of(wavelength, surface_number), rays.columns(from), block_at(from, rays));
+    pass(scene, wavelength, surface_number, surface.local_from_previous, surface.centred, rays.columns(from), block_at(from, rays));
 }
 
 Vec3<double> global_position(const scene::Scene& scene, int surface_number, const RayBatch& rays, std::size_t ray) {

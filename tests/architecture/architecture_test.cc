@@ -61,11 +61,12 @@ const std::map<std::string, std::set<std::string>> layers{
     {"lib/numerics", {}},
     {"lib/medium", {"lib/numerics"}},
     {"lib/surface", {"lib/numerics"}},
-    {"lib/prescription", {"lib/numerics", "lib/medium", "lib/surface"}},
-    {"lib/scene", {"lib/numerics", "lib/surface"}},
-    {"lib/trace", {"lib/numerics", "lib/surface", "lib/scene"}},
-    {"lib/analysis", {"lib/numerics", "lib/surface", "lib/scene", "lib/trace"}},
-    {"lib/study", {"lib/numerics", "lib/medium", "lib/surface", "lib/prescription", "lib/scene", "lib/trace", "lib/analysis"}},
+    {"lib/gradient_index", {"lib/numerics", "lib/surface"}},
+    {"lib/prescription", {"lib/numerics", "lib/medium", "lib/surface", "lib/gradient_index"}},
+    {"lib/scene", {"lib/numerics", "lib/surface", "lib/gradient_index"}},
+    {"lib/trace", {"lib/numerics", "lib/surface", "lib/gradient_index", "lib/scene"}},
+    {"lib/analysis", {"lib/numerics", "lib/surface", "lib/gradient_index", "lib/scene", "lib/trace"}},
+    {"lib/study", {"lib/numerics", "lib/medium", "lib/surface", "lib/gradient_index", "lib/prescription", "lib/scene", "lib/trace", "lib/analysis"}},
     {"lib/output", {"lib/numerics", "lib/surface", "lib/scene", "lib/trace", "lib/analysis", "lib/study"}}};
 
 // The bridge from the model to the scene: these files of lib/scene alone know the prescription.

@@ -35,7 +35,7 @@ TEST(Readme, NamesEveryKeyOfThePrescription) {
   for (const prescription::KeyTable table :
        {prescription::KeyTable(prescription::system_keys), prescription::KeyTable(prescription::aperture_keys),
         prescription::KeyTable(prescription::field_keys), prescription::KeyTable(prescription::object_keys),
-        prescription::KeyTable(prescription::surface_keys), prescription::KeyTable(prescription::medium_keys),
+        prescription::KeyTable(prescription::surface_keys), prescription::KeyTable(prescription::medium_keys), prescription::KeyTable(prescription::gradient_keys),
         prescription::KeyTable(prescription::study_keys), prescription::KeyTable(prescription::variant_keys),
         prescription::KeyTable(prescription::roughness_keys), prescription::KeyTable(prescription::paper_keys)})
     check(table);
@@ -43,7 +43,11 @@ TEST(Readme, NamesEveryKeyOfThePrescription) {
     EXPECT_TRUE(names(text, shape.name)) << shape.name;
     check(shape.keys);
   }
-  EXPECT_GT(checked, 35);
+  for (const auto& form : prescription::gradient_kinds()) {
+    EXPECT_TRUE(names(text, form.name)) << form.name;
+    check(form.keys);
+  }
+  EXPECT_GT(checked, 50);
 }
 
 TEST(Readme, NamesEveryStatusOfARay) {

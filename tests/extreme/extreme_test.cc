@@ -50,7 +50,7 @@ class Bench {
   }
   bool is_ready() const { return scene_.surface_count() > 0; }
   bool is_in_textbook() const {
-    return std::all_of(scene_.surfaces.begin(), scene_.surfaces.end(), [](const auto& surface) { return test::is_in_textbook(surface.shape); });
+    return scene_.primary.gradients.empty() && std::all_of(scene_.surfaces.begin(), scene_.surfaces.end(), [](const auto& surface) { return test::is_in_textbook(surface.shape); });
   }
 
   std::vector<Seen> ours() const {
@@ -74,10 +74,12 @@ class Bench {
   std::vector<Seen> templates() const {
     return seen_by<FiftyDigits>([&](const Vec3<FiftyDigits>& position, const Vec3<FiftyDigits>& direction, const FiftyDigits& opl) {
       study::Path<FiftyDigits> ray{position, direction, 0, opl};
-      for (int number = 1; number <= surface_; ++number)
-        ray = study::through(scene_.surface(number), number, before(number), behind(number), ray, [&](const auto& p, const auto& d) {
-          return std::visit([&](const auto& shape) -> surface::Crossing<FiftyDigits> { return shape.meet(p, d); }, scene_.surface(number).shape);
-        });
+      for (int number = 1; number <= surface_ && ray.ended == 0; ++number)
+        ray = scene_.primary.has_gradient_at(number)
+                  ? study::through_gradient(scene_.surface(number), number, scene_.primary, ray).behind
+                  : study::through(scene_.surface(number), number, before(number), behind(number), ray, [&](const auto& p, const auto& d) {
+                      return std::visit([&](const auto& shape) -> surface::Crossing<FiftyDigits> { return shape.meet(p, d); }, scene_.surface(number).shape);
+                    });
       return TextbookRay<FiftyDigits>{ray.position, ray.direction, ray.opl, static_cast<Status>(ray.ended % 8), ray.ended / 8};
     });
   }

@@ -175,5 +175,38 @@ TEST(Rounding, IsTheSameForAnyNumberOfThreads) {
   }
 }
 
+// The exact rays bend too: what the tolerance leaves is seen at the surface that ends the medium.
+TEST(Rounding, OfARayInAGradientIsWhatItsToleranceLeaves) {
+  const auto of = [](const std::string& tolerance) {
+    const auto compiled = checked(compile_text(prescription_of("  - {stop: true, thickness_mm: 20, medium: {grin: {selfoc: {index: 1.6, g_per_mm: 0.3}}}}\n"
+                                                               "  - {conic: {radius_mm: -20}, thickness_mm: 2}\n  - {}\n", "entrance_pupil_diameter_mm: 1", tolerance)));
+    return rounding_of(compiled.scene, {.rays = 7});
+  };
+  const Rounding fine = of(""), coarse = of("tolerance_mm: 1e-6\n");
+  EXPECT_TRUE(fine.disagreements.empty());
+  EXPECT_LE(fine.surfaces[2].own_position_mm.worst(), 1e-12 * 40);
+  EXPECT_GE(fine.surfaces[2].without_bound, 7);
+  EXPECT_GT(coarse.surfaces[2].own_position_mm.worst(), 1e-10);
+  EXPECT_LE(coarse.surfaces[2].own_position_mm.worst(), 1e-6 * 40);
+  EXPECT_EQ(coarse.surfaces[2].cause, "the tolerance in a gradient, and many operations");
+  EXPECT_LE(coarse.surfaces[3].own_position_mm.worst(), 1e-14);
+}
+
+TEST(TrueRays, BendInGradientsAndDoNotStudyTheirSurfaces) {
+  const auto compiled = checked(compile_text(prescription_of("  - {stop: true, conic: {radius_mm: 30}, thickness_mm: 3, medium: {index: 1.5}}\n  - {thickness_mm: 4, medium: {grin: {selfoc: {index: 1.6, "
+                                                             "g_per_mm: 0.3}}}}\n  - {conic: {radius_mm: -20}, thickness_mm: 2}\n  - {}\n", "entrance_pupil_diameter_mm: 1")));
+  const auto pupil = trace::pupil_points({trace::PatternKind::hexapolar}, 7);
+  const auto exact = study::true_rays(compiled.scene, compiled.scene.primary, compiled.scene.fields[0], pupil, {.surface_number = 1});
+  ASSERT_TRUE(exact.rays) << exact.reason;
+  auto rays = trace::launch(compiled.scene, compiled.scene.fields[0], 1, pupil);
+  trace::trace(compiled.scene, compiled.scene.primary, rays);
+  for (std::size_t i = 0; i < pupil.size(); ++i) {
+    EXPECT_NEAR(static_cast<double>(exact.rays->at_image[i].position.x), rays.x[i], 1e-11);
+    EXPECT_NEAR(static_cast<double>(exact.rays->at_image[i].position.y), rays.y[i], 1e-11);
+    EXPECT_EQ(exact.rays->at_image[i].ended, 0);
+  }
+  EXPECT_NE(study::true_rays(compiled.scene, compiled.scene.primary, compiled.scene.fields[0], pupil, {.surface_number = 2}).reason.find("gradient-index"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace sagitta::test
