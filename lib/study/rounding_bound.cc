@@ -118,7 +118,7 @@ HeightRounding height_rounding(const surface::Zernike& zernike, const Place& at)
   const double G = 1 - (1 + zernike.base.conic_constant) * zernike.base.curvature * base_z, G_1 = std::min(1.0, G * G);
   const auto start = zernike.base.meet(at.start, at.d);
   const double scale = 2 * (norm(at.hit) + norm(at.hit - start.point));
-  const double e = 4 * u * (std::abs(at.hit.z) + p + w + zernike.coefficient_sum + V) + sum + (6 * u * (.5 * c * (r * r + m * w * w) + w + p) + 4 * u * w) / G_1 + 2 * u * scale;
+  const double e = 4 * u * (std::abs(at.hit.z) + p + w + zernike.size_at_any_place + V) + sum + (6 * u * (.5 * c * (r * r + m * w * w) + w + p) + 4 * u * w) / G_1 + 2 * u * scale;
   const double base_slope = c * r * (4 * u + (4 * u * (1 + m * c * c * r * r + m * c * w) + m * c * e) / G_1) / std::sqrt(G_1);
   return {e, slope + base_slope, 8 * u * scale};
 }

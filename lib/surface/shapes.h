@@ -46,7 +46,7 @@ inline std::size_t data_bytes(const Shape& shape) {
 // The shape of fewest operations that is the same surface: a Zernike surface without terms is its conic, a conic of K = 0 a
 // sphere, one of curvature 0 a plane.
 inline Shape least_form(const Shape& shape) {
-  if (const auto* zernike = std::get_if<Zernike>(&shape); zernike && zernike->coefficient_sum == 0) return least_form(zernike->base);
+  if (const auto* zernike = std::get_if<Zernike>(&shape); zernike && zernike->size_at_any_place == 0) return least_form(zernike->base);
   if (const auto* conic = std::get_if<Conic>(&shape)) {
     if (conic->curvature == 0) return Plane{};
     if (conic->conic_constant == 0) return Sphere{conic->curvature};
