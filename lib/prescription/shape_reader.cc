@@ -18,6 +18,7 @@ using numerics::ValueKind;
 // The index range of a key, which may depend on a choice that was read before it.
 numerics::IndexRange index_range(const Key& key, const Parameters& parameters) {
   if (!key.indices) return {};
+  if (key.indexed_by.empty()) return key.indices({});
   const auto choice = parameters.texts.find(key.indexed_by);
   return choice == parameters.texts.end() ? numerics::IndexRange{} : key.indices(choice->second);
 }

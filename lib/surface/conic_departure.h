@@ -35,6 +35,11 @@ inline constexpr numerics::Key base_radius_key{.name = "radius_mm", .meaning = "
                                                .range = numerics::nonzero_or_infinite, .fallback = std::numeric_limits<double>::infinity()};
 inline constexpr numerics::Key base_conic_constant_key{.name = "conic_constant", .meaning = "K of the base conic: 0 sphere, -1 paraboloid", .range = conic_constants};
 
+// The rounding of a sum and of its slopes, at most; the size of its terms.
+struct SumRounding {
+  double value = 0, slope = 0, terms = 0;
+};
+
 template <class Shape>
 struct ConicDeparture {
   Conic base;

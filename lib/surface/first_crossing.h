@@ -29,13 +29,43 @@ inline constexpr int most_first_crossing_looks = 1000;
 // Far outside of what a departure is given for, its heights and slopes grow as high powers do; up to here their squares are numbers.
 inline constexpr double largest_departure = 1e100;
 
-// The surface has base, height(x, y), and
+// A step (2) that F does not come to 0 within, from `at` along d. The surface bounds its second derivative along the line up to a distance h to
+// either side,
+//   T bend_on(at, d, h),
+// or it departs from a conic, (3), and has
 //   T reach_from(r): a radius R > r to bound p within;   T bend_within(R): b_p(R).
 template <class T, class Surface>
-Crossing<T> first_crossing(const Surface& surface, const Crossing<T>& start, const Vec3<T>& d) {
+T safe_step(const Surface& surface, const Vec3<T>& at, const Vec3<T>& d, const T& F, const T& falls) {
   using std::abs, std::sqrt;
-  const T eps = std::numeric_limits<T>::epsilon(), c(surface.base.curvature), one_plus_K = T(1) + T(surface.base.conic_constant);
-  const T sine_squared = d.x * d.x + d.y * d.y, sine = sqrt(sine_squared);
+  const auto safe_with = [&](const T& bend) { return T(T(2) * F / (falls + sqrt(falls * falls + T(2) * bend * F))); };
+  if constexpr (requires { surface.bend_on(at, d, F); }) {
+    const T most = F + abs(at.x) + abs(at.y) + abs(at.z), at_most = safe_with(surface.bend_on(at, d, T(0)));
+    T h = at_most <= most ? at_most : most;
+    for (int halving = 0; halving < 60; ++halving, h = h / T(2)) {
+      const T safe = safe_with(surface.bend_on(at, d, h));
+      if (safe >= h) return h;
+      if (T(2) * safe >= h) return safe;
+    }
+    return T(0);
+  } else {
+    const T c(surface.base.curvature), one_plus_K = T(1) + T(surface.base.conic_constant);
+    const T sine_squared = d.x * d.x + d.y * d.y, sine = sqrt(sine_squared);
+    const T r = sqrt(at.x * at.x + at.y * at.y), radicand = T(1) - one_plus_K * c * c * r * r;
+    T within = surface.reach_from(r);
+    if (!(T(1) - one_plus_K * c * c * within * within >= radicand / T(2))) within = sqrt((T(1) - radicand / T(2)) / one_plus_K) / abs(c);
+    const T least = T(1) - one_plus_K * c * c * within * within;
+    const T bend = sine_squared * (abs(c) / (least < T(1) ? least * sqrt(least) : T(1)) + surface.bend_within(within));
+    const T safe = safe_with(bend);
+    const T farthest = sine > T(0) ? T((within - r) / sine) : safe;
+    return safe <= farthest ? safe : farthest;
+  }
+}
+
+// The surface has base, height(x, y), and what safe_step asks for.
+template <class T, class Surface>
+Crossing<T> first_crossing(const Surface& surface, const Crossing<T>& start, const Vec3<T>& d) {
+  using std::abs;
+  const T eps = std::numeric_limits<T>::epsilon();
   const Vec3<T>& origin = start.point;
   T t(0), sense(0), sign(0);
   for (int look = 0; look < most_first_crossing_looks; ++look) {
@@ -64,14 +94,7 @@ Crossing<T> first_crossing(const Surface& surface, const Crossing<T>& start, con
     const T g_t = d.z - d.x * base_slope.x - d.y * base_slope.y, p_t = g_t - slope;
     if (!(sense * (g_t * p - g * p_t) > T(0))) break;
 
-    const T r = sqrt(at.x * at.x + at.y * at.y), radicand = T(1) - one_plus_K * c * c * r * r;
-    T within = surface.reach_from(r);
-    if (!(T(1) - one_plus_K * c * c * within * within >= radicand / T(2))) within = sqrt((T(1) - radicand / T(2)) / one_plus_K) / abs(c);
-    const T least = T(1) - one_plus_K * c * c * within * within;
-    const T bend = sine_squared * (abs(c) / (least < T(1) ? least * sqrt(least) : T(1)) + surface.bend_within(within));
-    const T safe = T(2) * F / (falls + sqrt(falls * falls + T(2) * bend * F));  // (2)
-    const T farthest = sine > T(0) ? T((within - r) / sine) : safe;
-    const T step = safe <= farthest ? safe : farthest;
+    const T step = safe_step(surface, at, d, F, falls);
     if (!(step > T(0)) || !(step - step == T(0)) || t + sense * step == t) break;
     t += sense * step;
   }
