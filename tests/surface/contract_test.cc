@@ -190,8 +190,8 @@ TEST(Contract, HitIsTheOneContinuousWithTheBase) {
   const auto asphere = made<Asphere>({{{"radius_mm", 12}, {"conic_constant", -.8}}, {{4, 6e-3}, {6, -3e-4}, {7, 1e-6}}}, arena);
   const auto xy = made<XyPolynomial>({{{"radius_mm", 20}}, {{4, .1}, {6, .02}, {8, -.03}, {12, .004}}}, arena);
   const auto biconic = Biconic::of({1 / 9.0, .3}, {1 / 20.0, -1.5});
-  const auto toroid = made<Toroid>({{{"radius_rotation_mm", 25}, {"radius_mm", -30}}, {{2, .06}, {4, -3e-3}, {5, 2e-4}}}, arena);
-  const auto check = [](const char* name, const auto& shape, double least_slow) {
+  const auto toroid = made<Toroid>({{{"radius_rotation_mm", 25}, {"radius_mm", -30}}, {{2, .2}, {4, -.02}, {6, 4e-4}}}, arena);
+  const auto check = [](const char* name, const auto& shape, double least_slow, int most_grazing) {
     SCOPED_TRACE(name);
     int agree = 0, differ = 0, hits = 0, folded = 0, slow = 0;
     for (const Line& line : lines_to(6, 88, 2000)) {
@@ -217,12 +217,13 @@ TEST(Contract, HitIsTheOneContinuousWithTheBase) {
     }
     EXPECT_GT(hits, 900);
     EXPECT_GT(slow, least_slow);
-    EXPECT_LE(differ, agree / 500) << hits << " hits, " << folded << " folded";
+    EXPECT_GT(agree, 1500);
+    EXPECT_LE(differ, most_grazing) << hits << " hits, " << folded << " folded";
   };
-  check("asphere", asphere, 100);
-  check("xy polynomial", xy, 100);
-  check("biconic", biconic, 20);
-  check("toroid", toroid, 100);
+  check("asphere", asphere, 100, 0);
+  check("xy polynomial", xy, 100, 1);
+  check("biconic", biconic, 20, 0);
+  check("toroid", toroid, 100, 0);
 }
 
 }  // namespace
