@@ -29,6 +29,7 @@
 #include "tools/bench_limit.h"
 #include "tools/bench_preparation.h"
 #include "tools/bench_startup.h"
+#include "tools/bench_stability.h"
 #include "tools/bench_subject.h"
 
 namespace {
@@ -205,6 +206,7 @@ int main(int argc, char** argv) {
   bench::register_preparation();
   bench::register_startup();
   bench::register_limit();
+  bench::register_stability();
   bench::register_kernels();
   bench::register_jobs();
   bench::register_growth();
@@ -218,6 +220,7 @@ int main(int argc, char** argv) {
   bench::print_preparation(keeper.medians);
   bench::print_startup(keeper.medians);
   bench::print_limit(keeper.medians);
+  bench::print_stability(keeper.medians);
   bench::print_kernels(keeper.medians);
   bench::print_jobs(keeper.medians);
   bench::print_growth(keeper.medians);

@@ -84,7 +84,7 @@ void add_verify(CLI::App& app, int& status) {
   static VerifyOptions options;
   CLI::App* command = app.add_subcommand("verify", "Trace rays in double and in 50 digits, and say what rounding does to the answers");
   command->add_option("SYSTEM", options.systems, "prescriptions (YAML); of several, a line each")->required();
-  command->add_option("--rays", options.ray_count, "rays per field and wavelength, at least")->check(CLI::Range(std::int64_t{1}, std::int64_t{100000}))->capture_default_str();
+  command->add_option("--rays", options.ray_count, "rays per field and wavelength, at least; each takes .1 ms a surface")->check(CLI::Range(std::int64_t{1}, std::int64_t{100000}))->capture_default_str();
   command->add_option("--position-mm", options.position_tolerance_mm, "what a place in the image may be off by, mm")->check(from_to(0, 1e300))->capture_default_str();
   command->add_option("--opd-waves", options.opd_tolerance_waves, "what a wavefront may be off by, waves")->check(from_to(0, 1e300))->capture_default_str();
   command->add_option("--threads", options.thread_count, "threads (default: as many as the machine runs)")->check(CLI::Range(1, 1024));

@@ -16,9 +16,9 @@ struct RoundingReport {
   double position_tolerance_mm = 0, opd_tolerance_waves = 0;
 };
 
-// Every place in the image and every OPD is good to the tolerances, and no ray ends differently but on the rim of an aperture.
+// Some ray arrives, every place in the image and every OPD is good to the tolerances, and no ray ends differently but on the rim of an aperture.
 bool is_good(const RoundingReport& report);
-// The surface of the largest share in what is not good, from 1; 0: none, or the launch.
+// The surface of the largest share in what is not good, or that ends the last ray where none arrives, from 1; 0: none, or the launch.
 int surface_to_blame(const RoundingReport& report);
 
 std::string rounding_text(const RoundingReport& report);

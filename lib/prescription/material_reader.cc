@@ -43,7 +43,12 @@ class MaterialFile {
       : file_(std::move(file)), name_(fs::path(file_).stem().string()), findings_(findings), errors_before_(findings.error_count()) {}
 
   std::optional<medium::Medium> read() {
-    const YamlNode::Pointer root = read_yaml(file_, findings_);
+    Findings of_text;
+    const YamlNode::Pointer root = read_yaml(file_, of_text);
+    for (const Finding& one : of_text.all()) {
+      if (is_full()) return std::nullopt;
+      findings_.add(one);
+    }
     if (!root) return std::nullopt;
     const YamlNode::Pointer data = root->find("DATA");
     if (!data || data->kind != YamlNode::Kind::sequence) {

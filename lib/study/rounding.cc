@@ -142,16 +142,43 @@ struct Factor {
   double factor;
 };
 
-double smallest_angle_sine(const surface::Facets& facets, const Vec3<Exact>& point) {
-  const std::uint32_t f = facets.facet_at(static_cast<double>(point.x), static_cast<double>(point.y));
-  if (f == surface::no_facet) return 1;
-  double least = 1;
+// What the facet under a point does to rounding.
+struct AtFacet {
+  double angle_sine = 1;  // of its smallest angle
+  bool is_on_edge = false;
+};
+
+AtFacet at_facet(const surface::Facets& facets, const Vec3<Exact>& point) {
+  const double x = static_cast<double>(point.x), y = static_cast<double>(point.y);
+  const std::uint32_t f = facets.facet_at(x, y);
+  if (f == surface::no_facet) return {1, true};  // beyond the rim by rounding
+  AtFacet result;
   for (std::size_t i = 0; i < 3; ++i) {
     const auto corner = [&](std::size_t k) { return facets.mesh->vertices[facets.mesh->corners[f][k % 3]]; };
     const Vec3<double> a = corner(i + 1) - corner(i), b = corner(i + 2) - corner(i);
-    least = std::min(least, norm(cross(a, b)) / (norm(a) * norm(b)));
+    const double from_edge = std::abs(a.x * (y - corner(i).y) - a.y * (x - corner(i).x)) / std::hypot(a.x, a.y);
+    result.angle_sine = std::min(result.angle_sine, norm(cross(a, b)) / (norm(a) * norm(b)));
+    result.is_on_edge = result.is_on_edge || from_edge <= 16 * 0x1p-52 * (facets.mesh->extent + norm(facets.mesh->centre));
   }
-  return least;
+  return result;
+}
+
+// The sum of the sizes of a radial interpolant's terms; 0 of other shapes.
+double radial_terms(const surface::Shape& shape, const Vec3<Exact>& point) {
+  return std::visit([&]<class S>(const S& of) {
+    double sum = 0;
+    if constexpr (requires { of.radial(0.0, 0.0); }) {
+      const std::uint32_t f = of.facets.facet_at(static_cast<double>(point.x), static_cast<double>(point.y));
+      if (f == surface::no_facet) return 0.0;
+      const auto& patch = of.patches[f];
+      for (std::uint32_t k = patch.first; k < patch.first + patch.node_count; ++k) {
+        const auto& node = of.facets.mesh->vertices[of.nodes[k]];
+        const double dx = static_cast<double>(point.x) - node.x, dy = static_cast<double>(point.y) - node.y;
+        sum += std::abs(of.weights[k] * of.radial(dx * dx + dy * dy, of.shape_squared).phi);
+      }
+    }
+    return sum;
+  }, shape);
 }
 
 // By which geometry enlarges rounding at one ray's crossing.
@@ -164,13 +191,16 @@ std::string cause_at(const View& view, int number, const ExactRay& before, doubl
   const double cosine = size_of(Exact(crossing.along / length)), steep = static_cast<double>(Exact(length / crossing.normal.z));
   const double cosine_behind = step.behind.ended == 0 ? size_of(Exact(dot(step.behind.direction, crossing.normal) / length)) : 0;
   const surface::Facets* facets = facets_in(surface.shape);
+  const AtFacet at = facets ? at_facet(*facets, crossing.point) : AtFacet{};
+  if (at.is_on_edge && !std::holds_alternative<surface::Patches>(surface.shape)) return "edge of a facet";
   const double mu = view.index_before(number) / view.index_behind(number);
   std::vector<Factor> factors{{"near-grazing incidence", 1 / cosine},
                               {"near the critical angle", cosine_behind > 0 ? 1 / cosine_behind : 1},
                               {"steep surface", std::abs(steep)},
                               {"long distance", size_of(crossing.path) / scale},
                               {"strong curvature", std::abs(surface.vertex_curvature) * scale},
-                              {"ill-conditioned facet", facets ? 1 / smallest_angle_sine(*facets, crossing.point) : 1},
+                              {"ill-conditioned facet", 1 / at.angle_sine},
+                              {"radial functions that cancel", radial_terms(surface.shape, crossing.point) / scale},
                               {"index ratio near 1", mu != 1 && std::abs(mu - 1) < 1e-3 ? 1.5 : 1}};
   const auto largest = std::max_element(factors.begin(), factors.end(), [](const Factor& a, const Factor& b) { return a.factor < b.factor; });
   return largest->factor > 1.25 ? largest->cause : "many operations";
@@ -187,7 +217,7 @@ class Gatherer {
   }
 
   void add(const Bundle& bundle) {
-    FieldRounding field{bundle.field, bundle.wavelength, static_cast<std::int64_t>(bundle.tracks.size()), 0, {}, {}, bundle.reference.reason};
+    FieldRounding field{bundle.field, bundle.wavelength, static_cast<std::int64_t>(bundle.tracks.size()), 0, {}, {}, 0, bundle.reference.reason};
     for (std::size_t i = 0; i < bundle.tracks.size(); ++i) {
       const Track& one = bundle.tracks[i];
       ++result_.rays;
@@ -254,21 +284,21 @@ class Gatherer {
     const Exact per_wave = Exact(1e3) / Exact(scene_.wavelengths[bundle.wavelength].wavelength_um), exact_opd = has_wavefront ? opd_of(bundle.exact_sphere, one.exact_in_image) : Exact(0);
     const ExactRay* before = &one.exact_in_image;
     Exact opd_before = exact_opd;
+    const trace::RayBatch& image = bundle.states.back();
+    const double opd = has_wavefront ? optical_path_difference(bundle.reference.sphere, image.position(i), image.direction(i), image.opl[i]) : 0;
+    const bool misses = std::isnan(opd) && std::isnan(static_cast<double>(exact_opd));  // the reference sphere
+    if (misses) ++field.without_opd;
+    else if (has_wavefront) field.opd_waves.add(size_of(Exact((Exact(opd) - exact_opd) * per_wave)));
     for (std::size_t k = 0; k < one.in_image.size(); ++k) {
       if (one.in_image[k].ended != 0) return;  // a ray on the edge of ending: its share has no size
       result_.surfaces[k].share_mm.add(size_of(one.in_image[k].position - before->position));
       before = &one.in_image[k];
-      if (!has_wavefront) continue;
-      const Exact opd = opd_of(bundle.spheres[k], one.in_image[k]);
-      result_.surfaces[k].share_waves.add(size_of(Exact((opd - opd_before) * per_wave)));
-      opd_before = opd;
+      if (!has_wavefront || misses) continue;
+      const Exact opd_here = opd_of(bundle.spheres[k], one.in_image[k]);
+      result_.surfaces[k].share_waves.add(size_of(Exact((opd_here - opd_before) * per_wave)));
+      opd_before = opd_here;
     }
-    if (!has_wavefront) return;
-    const trace::RayBatch& image = bundle.states.back();
-    const double opd = optical_path_difference(bundle.reference.sphere, image.position(i), image.direction(i), image.opl[i]);
-    if (std::isnan(opd)) return;  // it misses the reference sphere
-    result_.opd_formula_waves.add(size_of(Exact((Exact(opd) - opd_before) * per_wave)));
-    field.opd_waves.add(size_of(Exact((Exact(opd) - exact_opd) * per_wave)));
+    if (has_wavefront && !misses) result_.opd_formula_waves.add(size_of(Exact((Exact(opd) - opd_before) * per_wave)));
   }
 
   const scene::Scene& scene_;

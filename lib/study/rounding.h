@@ -17,7 +17,8 @@
 // scale is the largest distance of a vertex from the next, or the entrance pupil's semi-diameter. Where digits are lost: the largest of some factors
 // by which geometry enlarges rounding, at the ray that loses most,
 //   near-grazing incidence 1/cos I;  near the critical angle 1/cos I';  steep surface sqrt(1 + |grad z|^2);  long distance |t|/scale;
-//   strong curvature |c| scale;  ill-conditioned facet 1/sin(its smallest angle);  index ratio near 1, where nothing else is to blame.
+//   strong curvature |c| scale;  ill-conditioned facet 1/sin(its smallest angle);
+//   radial functions that cancel, sum of their sizes/scale;  edge of a facet, within rounding, where the slope jumps;  index ratio near 1, where nothing else is to blame.
 //
 // Bounds: what rounding can do at most to one ray at one surface, from the counts of roundings and the geometry at that ray's own crossing
 // (rounding_bound_internal.h: distances, cosines before and behind, curvatures, the sizes of the terms of the surface's equation). An own
@@ -28,6 +29,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -36,10 +38,11 @@
 
 namespace sagitta::study {
 
-// Of sizes; 0 where there is none.
+// Of sizes; 0 where there is none. What is no number is the worst there is.
 class Spoiled {
  public:
-  void add(double size) {
+  void add(double given) {
+    const double size = given == given ? given : std::numeric_limits<double>::infinity();
     worst_ = size > worst_ ? size : worst_;
     squares_ += size * size;
     ++count_;
@@ -77,6 +80,7 @@ struct FieldRounding {
   std::size_t field = 0, wavelength = 0;
   std::int64_t rays = 0, arrived = 0;
   Spoiled position_mm, opd_waves;  // in the image
+  std::int64_t without_opd = 0;    // rays that arrive and miss the reference sphere, in double and exactly
   std::string no_wavefront;        // why there is no OPD
 };
 

@@ -35,7 +35,7 @@ Met met(const surface::Plane&, const Place& at) {
 
 // z = (x^2 + y^2 + (1+K) z^2) c/2 by surface/conic.h, (3) to (5); a sphere with K = 0.
 Met met_conic(double c, double one_plus_K, const Place& at) {
-  const Vec3<double> p = surface::nearest_to_vertex(at.start, at.d), &d = at.d, &P = at.hit;
+  const Vec3<double> p = surface::nearest_to_vertex(at.start, at.d).point, &d = at.d, &P = at.hit;
   const double t = dot(P - p, d), m = std::abs(one_plus_K), k = std::abs(c), m_1 = std::max(m, 1.0);
   const auto of = [&](const Vec3<double>& a, const Vec3<double>& b) { return k * (std::abs(a.x * b.x) + std::abs(a.y * b.y) + m * std::abs(a.z * b.z)); };
   const double A = of(d, d), B = std::abs(d.z) + of(d, p), C = of(p, p) + 2 * std::abs(p.z);  // the terms' sizes

@@ -44,11 +44,12 @@ struct Quadric {
   template <class T>
   Crossing<T> meet(const Vec3<T>& start, const Vec3<T>& d) const {
     const T c_x(curvature_x), c_y(curvature_y), m(axial);
-    const Vec3<T> p = nearest_to_vertex(start, d);
+    const NearestToVertex<T> from = nearest_to_vertex(start, d);
+    const Vec3<T>& p = from.point;
     const T A = c_x * d.x * d.x + c_y * d.y * d.y + m * d.z * d.z;
     const T B = d.z - (c_x * d.x * p.x + c_y * d.y * p.y + m * d.z * p.z);
     const T C = c_x * p.x * p.x + c_y * p.y * p.y + m * p.z * p.z - T(2) * p.z;
-    return crossing_of_quadric(start, p, d, c_x, c_y, m, A, B, C);
+    return crossing_of_quadric(from, d, c_x, c_y, m, A, B, C);
   }
 };
 

@@ -14,6 +14,9 @@
 // Errors: |d'| = 1 within 2 ulp if |d| = 1; the tangential component mu d - (...) within 2 ulp. The cosine of
 // refraction has the error 4e-16 / cosine that the radicand's rounding forces near the critical angle.
 //
+// The conjugate and the Newton step for the length take a fifth of a step's time (tools/bench, stability_*). Without the conjugate an index ratio of
+// 1 + 1e-12 leaves 4 digits of the deviation; without the step lengths drift by an ulp a surface, and paths with them.
+//
 // Source: Born and Wolf, Principles of Optics (7th ed. 1999), section 3.2.2; eq. (10) of the 2009 Applied Optics paper
 // on Delaunay surfaces is the textbook form with misprints (v = n K.N, not K.N).
 #pragma once

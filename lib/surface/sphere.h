@@ -29,8 +29,9 @@ struct Sphere {
   template <class T>
   Crossing<T> meet(const Vec3<T>& start, const Vec3<T>& d) const {
     const T c = curvature;
-    const Vec3<T> p = nearest_to_vertex(start, d);
-    return crossing_of_quadric(start, p, d, c, c, c, c, T(d.z - c * dot(d, p)), T(c * dot(p, p) - T(2) * p.z));
+    const NearestToVertex<T> from = nearest_to_vertex(start, d);
+    const Vec3<T>& p = from.point;
+    return crossing_of_quadric(from, d, c, c, c, c, T(d.z - c * dot(d, p)), T(c * dot(p, p) - T(2) * p.z));
   }
 };
 

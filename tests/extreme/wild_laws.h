@@ -136,7 +136,8 @@ inline std::optional<double> fermat(const Passage& at) {
     const Exact rises = (is_x ? Exact(-gradient.x) : Exact(-gradient.y)) / gradient.z * h;
     if (size_of(Exact(forth.z - p.z - rises)) + size_of(Exact(back.z - p.z + rises)) > 1e-12 * size_of(Exact(h * norm(gradient)))) return std::nullopt;
     const double tangent = size_of(forth - back) / size_of(Exact(2 * h));
-    const double most = tangent * ((at.index_before() + at.index_behind()) * at.bound.normal + at.index_behind() * at.bound.direction);
+    const double of_paths = (at.index_before() + at.index_behind()) * size_of(Exact(length / h)) * 4e-50;  // their own rounding, of 50 digits
+    const double most = tangent * ((at.index_before() + at.index_behind()) * at.bound.normal + at.index_behind() * at.bound.direction) + of_paths;
     worst = std::max(worst, part((opl(forth) - opl(back)) / (Exact(2) * h), most));
   }
   return worst;

@@ -263,6 +263,18 @@ TEST(Finding, ANarrowPoleIsSeenWhereItIsUsed) {
   EXPECT_THAT(prescription::test::text_of(at("2000").findings), testing::HasSubstr("pole has no index from 0.001 to 1000 at 2000 nm"));
 }
 
+// 2026-11-22, material: 116 errors of one file, where 20 are enough.
+TEST(Finding, AMaterialOfManyRepeatedKeysIsToldInAFew) {
+  const Folder folder;
+  std::string keys = "DATA:\n  - {type: formula 5, wavelength_range: 0.4 0.7, coefficients: 1.5}\n";
+  for (int i = 0; i < 130; ++i) keys += "A: 1\n";
+  EXPECT_EQ(fuzz_material(folder, keys), "");
+  prescription::Findings findings;
+  EXPECT_FALSE(prescription::read_material(folder.write("keys.yml", keys), findings));
+  EXPECT_EQ(findings.error_count(), 20);
+  EXPECT_THAT(prescription::test::text_of(findings), testing::HasSubstr("too many errors, the rest of this file was not read"));
+}
+
 // What a target begins with is of use: it gets beyond the reader.
 TEST(Seeds, AreReadAndCompiled) {
   const Folder folder;
