@@ -11,8 +11,8 @@
 // with the polynomials E of the even, O of the odd powers by Horner's rule; r is worked out only where there are odd ones. No term divides by r.
 // Error: below 4 (N + 3) u of sum |a_k| r^k, of the slope below that of sum k |a_k| r^(k-1).
 //
-// Domain: the conic's. The hit is that of conic_departure.h, with |grad p| <= sum k |a_k| r^(k-1), exact for terms of one sign, and second
-// derivatives below sum k (k-1) |a_k| r^(k-2).
+// Domain: the conic's. The hit is that of conic_departure.h, with |grad p| <= sum k |a_k| r^(k-1), exact for terms of one sign, and higher
+// derivatives along lines likewise, below sum k (k-1) |a_k| r^(k-2) and sum k (k-1) (k-2) |a_k| r^(k-3).
 //
 // Source: ISO 10110-12:2007, 5.2 (rotationally symmetric aspheres).
 #pragma once
@@ -106,12 +106,14 @@ struct Asphere : ConicDeparture<Asphere> {
     return r_squared * slope_over_r * slope_over_r;
   }
   template <class T>
-  T bend_within(const T& radius) const {
+  T bound_within(const T& radius, int derivatives) const {
     T sum(0);
-    for (int power = order; power >= 2; --power) {
+    for (int power = order; power >= derivatives; --power) {
       const int from_last = (power - power % 2) / 2;
       const double a = power % 2 == 0 ? (from_last <= even_count ? even[even_count - from_last] : 0) : (from_last <= odd_count ? odd[odd_count - from_last] : 0);
-      sum = sum * radius + T(power * (power - 1) * std::abs(a));
+      double factor = 1;
+      for (int k = 0; k < derivatives; ++k) factor *= power - k;
+      sum = sum * radius + T(factor * std::abs(a));
     }
     return sum;
   }

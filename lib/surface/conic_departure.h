@@ -19,7 +19,7 @@
 //   T size_of_terms(x, y)                  sum of the |terms| of p, for its rounding
 //   double size_at_any_place               the same where it is known without the place; else 0, and the iteration looks once more
 //   T steepest_squared_within(r_squared)   G^2 within that radius; infinite where it is not known
-//   bend_within(R), reach_from(r)          first_crossing.h
+//   bound_within(R, k), reach_from(r)      first_crossing.h
 #pragma once
 
 #include <limits>

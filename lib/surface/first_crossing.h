@@ -6,14 +6,18 @@
 //
 // While the departure grows from 0 to p, lambda p, the hit moves from t = 0 the way along which f goes to 0, lambda = g/p. It is there for
 // all lambda up to 1 exactly if lambda(t) rises all the way, and then it comes to the first zero of f. Where lambda stops
-// rising the hit ends at a fold: the ray has none (not_converged).
+// rising, W = g' p - g p' <= 0 (taken along the way), the hit ends at a fold: the ray has none (not_converged).
 //
-// That way is gone in steps that cannot pass a zero: with |f''| <= M, F = |f| and its slope F' along the way, F stays above 0 for
-//   h = 2 F/(-F' + sqrt(F'^2 + 2 M F)),                                                                              (2)
-// which near a simple zero is Newton's step less M F^2/(2 |F'|^3): it doubles the digits, from one side. M holds for the part of the
-// line in the disc of a radius R, which the step does not leave,
-//   M = sin^2 (b_conic(R) + b_p(R)),   b_conic = |c|/min(1, 1 - (1+K) c^2 R^2)^(3/2),   sin^2 = L^2 + M^2             (3)
-// and b_p(R) the surface's own bound of the second derivatives of p.
+// That way is gone in steps that cannot pass a zero of f: with F = |f|, its slope F' along the way and |g''| <= g_2, |p''| <= p_2, F stays above 0 for
+//   h = 2 F/(-F' + sqrt(F'^2 + 2 (g_2 + p_2) F)),                                                                    (2)
+// which near a simple zero is Newton's step less (g_2 + p_2) F^2/(2 |F'|^3): it doubles the digits, from one side. Nor may a step pass a fold: with W at
+// its two ends, W between them is at least the larger of
+//   (W_a + W_b - h |W'|)/2,          W'  = g'' p - g p''
+//   min(W_a, W_b) - h^2/8 |W''|,     W'' = g''' p + g'' p' - g' p'' - g p'''                                         (3)
+// where g, g', p, p' are bounded by their values at the ends and a later derivative. If that is not above 0 the step is made again, half as long.
+//
+// The bounds hold for the part of the line in the disc of a radius R, which a step does not leave. Of a conic, with q = (1+K) c^2 and s^2 = L^2 + M^2,
+//   g_2 = s^2 |c|/u^3,   g_3 = 3 s^3 |c| q R/u^5,   u^2 = 1 - q R^2;   for q < 0  u = 1, g_3 = 6/sqrt(27) s^3 |c| sqrt(-q)    (4)
 //
 // It ends as departure.h does: when F is at the rounding of its terms, or with a step that moves (x, y) by less than rounding.
 //
@@ -29,74 +33,110 @@ inline constexpr int most_first_crossing_looks = 1000;
 // Far outside of what a departure is given for, its heights and slopes grow as high powers do; up to here their squares are numbers.
 inline constexpr double largest_departure = 1e100;
 
-// A step (2) that F does not come to 0 within, from `at` along d. The surface bounds its second derivative along the line up to a distance h to
-// either side,
-//   T bend_on(at, d, h),
-// or it departs from a conic, (3), and has
-//   T reach_from(r): a radius R > r to bound p within;   T bend_within(R): b_p(R).
+// A step and what bounds the second and third derivatives of g and p on it.
+template <class T>
+struct BoundedStep {
+  T length, g_2, p_2, g_3, p_3;
+};
+
+// By (2). The surface has base, height(x, y), and departs from a conic with
+//   T reach_from(r): a radius R > r to bound p within;   T bound_within(R, k): of the k-th derivatives of p along lines, k = 2 and 3;
+// or else it bounds its second derivative along the line up to a distance h to either side, and so does its base,
+//   T bend_on(at, d, h).
 template <class T, class Surface>
-T safe_step(const Surface& surface, const Vec3<T>& at, const Vec3<T>& d, const T& F, const T& falls) {
+BoundedStep<T> bounded_step(const Surface& surface, const Vec3<T>& at, const Vec3<T>& d, const T& F, const T& falls) {
   using std::abs, std::sqrt;
   const auto safe_with = [&](const T& bend) { return T(T(2) * F / (falls + sqrt(falls * falls + T(2) * bend * F))); };
   if constexpr (requires { surface.bend_on(at, d, F); }) {
-    const T most = F + abs(at.x) + abs(at.y) + abs(at.z), at_most = safe_with(surface.bend_on(at, d, T(0)));
-    T h = at_most <= most ? at_most : most;
+    const T most = F + abs(at.x) + abs(at.y) + abs(at.z), at_most = safe_with(surface.bend_on(at, d, T(0))), unknown(std::numeric_limits<double>::infinity());
+    T h = at_most <= most ? at_most : most, bend(0);
     for (int halving = 0; halving < 60; ++halving, h = h / T(2)) {
-      const T safe = safe_with(surface.bend_on(at, d, h));
-      if (safe >= h) return h;
-      if (T(2) * safe >= h) return safe;
+      bend = surface.bend_on(at, d, h);
+      const T safe = safe_with(bend);
+      if (T(2) * safe >= h) {
+        h = safe <= h ? safe : h;
+        break;
+      }
     }
-    return T(0);
+    const T g_2 = surface.base.bend_on(at, d, h);
+    return {h, g_2, bend + g_2, unknown, unknown};
   } else {
-    const T c(surface.base.curvature), one_plus_K = T(1) + T(surface.base.conic_constant);
-    const T sine_squared = d.x * d.x + d.y * d.y, sine = sqrt(sine_squared);
-    const T r = sqrt(at.x * at.x + at.y * at.y), radicand = T(1) - one_plus_K * c * c * r * r;
-    T within = surface.reach_from(r);
-    if (!(T(1) - one_plus_K * c * c * within * within >= radicand / T(2))) within = sqrt((T(1) - radicand / T(2)) / one_plus_K) / abs(c);
-    const T least = T(1) - one_plus_K * c * c * within * within;
-    const T bend = sine_squared * (abs(c) / (least < T(1) ? least * sqrt(least) : T(1)) + surface.bend_within(within));
-    const T safe = safe_with(bend);
-    const T farthest = sine > T(0) ? T((within - r) / sine) : safe;
-    return safe <= farthest ? safe : farthest;
+    const T c(surface.base.curvature), q = (T(1) + T(surface.base.conic_constant)) * c * c;
+    const T s_squared = d.x * d.x + d.y * d.y, s = sqrt(s_squared);
+    const T r = sqrt(at.x * at.x + at.y * at.y), radicand = T(1) - q * r * r;
+    T R = surface.reach_from(r);
+    if (!(T(1) - q * R * R >= radicand / T(2))) R = sqrt((T(1) - radicand / T(2)) / q);
+    const T u_squared = q < T(0) ? T(1) : T(T(1) - q * R * R), u_cubed = u_squared * sqrt(u_squared), g_2 = s_squared * abs(c) / u_cubed;
+    const T per_g_2 = q < T(0) ? T(T(1.16) * sqrt(-q)) : T(T(3) * q * R / u_squared);  // 6/sqrt(27) < 1.16
+    const T p_2 = s_squared * surface.bound_within(R, 2), p_3 = s * s_squared * surface.bound_within(R, 3);
+    const T safe = safe_with(T(g_2 + p_2)), farthest = s > T(0) ? T((R - r) / s) : safe;
+    return {safe <= farthest ? safe : farthest, g_2, p_2, s * g_2 * per_g_2, p_3};
   }
 }
 
-// The surface has base, height(x, y), and what safe_step asks for.
+// A place on the way.
+template <class T>
+struct OnTheWay {
+  T t, F, falls;  // falls = -F'
+  T g, g_t, p, p_t, W;
+};
+
+// Whether W stays above 0 between two places, (3).
+template <class T>
+bool rises_between(const OnTheWay<T>& a, const OnTheWay<T>& b, const BoundedStep<T>& step) {
+  using std::abs;
+  const auto most = [](const T& x, const T& y) { return abs(x) > abs(y) ? T(abs(x)) : T(abs(y)); };
+  const T h = step.length, eighth = h * h / T(8), g = most(a.g, b.g) + step.g_2 * eighth, p = most(a.p, b.p) + step.p_2 * eighth;
+  if (a.W + b.W > h * (step.g_2 * p + g * step.p_2)) return true;
+  const T g_t = most(a.g_t, b.g_t) + step.g_3 * eighth, p_t = most(a.p_t, b.p_t) + step.p_3 * eighth;
+  return (a.W < b.W ? a.W : b.W) > eighth * (step.g_3 * p + step.g_2 * p_t + g_t * step.p_2 + g * step.p_3);
+}
+
+// The surface has what bounded_step asks for.
 template <class T, class Surface>
 Crossing<T> first_crossing(const Surface& surface, const Crossing<T>& start, const Vec3<T>& d) {
   using std::abs;
   const T eps = std::numeric_limits<T>::epsilon();
   const Vec3<T>& origin = start.point;
-  T t(0), sense(0), sign(0);
+  T sense(0), sign(0);  // of the way, and of f on it
+  BoundedStep<T> step{};
+  OnTheWay<T> here{};
+  bool is_halved = false;  // the step: then the next one is at most twice as long
   for (int look = 0; look < most_first_crossing_looks; ++look) {
+    const T t = here.t + sense * step.length;
+    if (look > 0 && !(sense * (t - here.t) > T(0))) break;  // NaN too
     const Vec3<T> at = origin + t * d;
     const Height<T> h = surface.height(at.x, at.y);
-    const T f = at.z - h.z, slope = d.z - d.x * h.dz_dx - d.y * h.dz_dy;
+    const Gradient<T> base_slope = surface.base.gradient(at.x, at.y);
+    const T base_z = surface.base.sag(at.x, at.y), g = at.z - base_z, p = h.z - base_z, f = at.z - h.z;
+    const T slope = d.z - d.x * h.dz_dx - d.y * h.dz_dy, g_t = d.z - d.x * base_slope.x - d.y * base_slope.y, p_t = g_t - slope;
     if (look == 0) {
       sign = f < T(0) ? T(-1) : T(1);
       sense = (f < T(0)) == (start.along > T(0)) ? T(1) : T(-1);
     }
-    const T F = sign * f, falls = -sign * sense * slope;  // -F'
-    if (!(F + abs(h.dz_dx) + abs(h.dz_dy) <= T(largest_departure))) break;
-    const T scale = abs(origin.x) + abs(origin.y) + abs(origin.z) + abs(t);
-    const bool at_rounding = F <= eps * (abs(at.z) + h.magnitude);
-    const T newton = F / falls;
-    const bool is_last = falls > T(0) && newton * (abs(d.x) + abs(d.y)) <= T(4) * eps * scale && newton <= scale;
+    const OnTheWay<T> there{t, sign * f, -sign * sense * slope, g, g_t, p, p_t, sense * (g_t * p - g * p_t)};
+    if (!(there.F + abs(h.dz_dx) + abs(h.dz_dy) <= T(largest_departure))) break;
+
+    const T scale = abs(origin.x) + abs(origin.y) + abs(origin.z) + abs(t), newton = there.F / there.falls;
+    const bool at_rounding = there.F <= eps * (abs(at.z) + h.magnitude);
+    const bool is_last = there.falls > T(0) && newton * (abs(d.x) + abs(d.y)) <= T(4) * eps * scale && newton <= scale;
+    if (!at_rounding && !(there.W > T(0))) break;
+    const bool is_same_place = step.length * (abs(d.x) + abs(d.y)) <= T(4) * eps * scale;
+    if (!is_same_place && !rises_between(here, there, step)) {
+      step.length = step.length / T(2);
+      is_halved = true;
+      continue;
+    }
     if (at_rounding || is_last) {
-      if (!(falls > T(0))) break;  // it touches
+      if (!(there.falls > T(0))) break;  // it touches
       const T last = at_rounding ? t : t + sense * newton;
       return {start.path + last, origin + last * d, {-h.dz_dx, -h.dz_dy, T(1)}, slope, Status::ok};
     }
-
-    // lambda = g/p rises: g' p - g p' > 0, with g' = d.z - conic', p' = g' - f'
-    const T base_z = surface.base.sag(at.x, at.y), g = at.z - base_z, p = h.z - base_z;
-    const Gradient<T> base_slope = surface.base.gradient(at.x, at.y);
-    const T g_t = d.z - d.x * base_slope.x - d.y * base_slope.y, p_t = g_t - slope;
-    if (!(sense * (g_t * p - g * p_t) > T(0))) break;
-
-    const T step = safe_step(surface, at, d, F, falls);
-    if (!(step > T(0)) || !(step - step == T(0)) || t + sense * step == t) break;
-    t += sense * step;
+    const T longest = is_halved ? T(T(2) * step.length) : T(std::numeric_limits<double>::infinity());
+    here = there;
+    step = bounded_step<T>(surface, at, d, here.F, here.falls);
+    is_halved = step.length > longest;
+    if (is_halved) step.length = longest;
   }
   return no_crossing<T>(Status::not_converged);
 }

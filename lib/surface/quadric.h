@@ -41,6 +41,17 @@ struct Quadric {
     const T root = sqrt(T(1) - T(axial) * (T(curvature_x) * x * x + T(curvature_y) * y * y));
     return {T(curvature_x) * x / root, T(curvature_y) * y / root};
   }
+  // Of the second derivative along the line up to a distance h to either side: with s = sqrt(1 - m N), z'' = N''/(2 s) + m N'^2/(4 s^3).
+  template <class T>
+  T bend_on(const Vec3<T>& at, const Vec3<T>& d, const T& within) const {
+    using std::abs, std::sqrt;
+    const T c_x = abs(T(curvature_x)), c_y = abs(T(curvature_y)), m(axial), L = abs(d.x), M = abs(d.y), X = abs(at.x) + L * within, Y = abs(at.y) + M * within;
+    const T N_1 = T(2) * (c_x * L * X + c_y * M * Y), N_2 = T(2) * (c_x * L * L + c_y * M * M);
+    const T s_squared = T(1) - m * (T(curvature_x) * at.x * at.x + T(curvature_y) * at.y * at.y) - abs(m) * N_1 * within;
+    if (!(s_squared > T(0))) return T(std::numeric_limits<double>::infinity());
+    const T s = sqrt(s_squared);
+    return N_2 / (T(2) * s) + abs(m) * N_1 * N_1 / (T(4) * s * s_squared);
+  }
   template <class T>
   Crossing<T> meet(const Vec3<T>& start, const Vec3<T>& d) const {
     const T c_x(curvature_x), c_y(curvature_y), m(axial);

@@ -83,7 +83,8 @@ struct XyPolynomial : ConicDeparture<XyPolynomial> {
   [[gnu::always_inline]] T bound_at(const T& rho, int derivatives) const {
     T sum(0);
     for (int n = polynomial.degree; n >= derivatives; --n) {
-      const double factor = derivatives == 0 ? 1 : derivatives == 1 ? n : 1.0 * n * (n - 1);
+      double factor = 1;
+      for (int k = 0; k < derivatives; ++k) factor *= n - k;
       sum = sum * rho + T(factor * sizes[n]);
     }
     return sum;
@@ -100,8 +101,10 @@ struct XyPolynomial : ConicDeparture<XyPolynomial> {
     return slope * slope;
   }
   template <class T>
-  T bend_within(const T& radius) const {
-    return bound_at(T(radius * T(per_radius)), 2) * T(per_radius) * T(per_radius);
+  T bound_within(const T& radius, int derivatives) const {
+    T bound = bound_at(T(radius * T(per_radius)), derivatives);
+    for (int k = 0; k < derivatives; ++k) bound *= T(per_radius);
+    return bound;
   }
   template <class T>
   T reach_from(const T& r) const {

@@ -16,11 +16,11 @@
 // so that their rounding would show beside r0 and the heights themselves (a millimetre of order 12 on a disc of 1 mm would be off by 8e-13).
 //
 // Intersection: conic_departure.h. The bound of the sum's slopes there:
-//   |grad p| <= G = sum |C_j N_j| n_j^2 T_n(s)/(s r0)   for rho <= s, s >= 1                                        (4)
-// (|Z_j/N_j| <= 1 in the unit disc, T_n(s) outside, T_n Chebyshev's polynomial, and a polynomial's gradient is below n^2 of that in the disc).
-// The second derivatives are bounded likewise: sum |C_j N_j| n_j^2 (n_j - 1)^2 T_n(s)/(s r0)^2.
+//   |D^k p| <= sum |C_j N_j| T_n^(k)(1) T_n(s)/(s r0)^k   for rho <= s, s >= 1                                       (4)
+// (|Z_j/N_j| <= 1 in the unit disc, T_n(s) outside, T_n Chebyshev's polynomial, and a polynomial's derivatives along lines in the disc are
+// below T_n^(k)(1) = prod_(i<k) (n^2 - i^2)/(2i + 1) of that).
 //
-// Source: Kellogg, Math. Z. 27, 55 (1928), for the gradient in (4).
+// Source: Harris, J. Math. Anal. Appl. 368, 374 (2010), for (4) (V. A. Markov's inequality in a disc).
 #pragma once
 
 #include <algorithm>
@@ -74,7 +74,7 @@ struct Zernike : ConicDeparture<Zernike> {
   double size_at_any_place = 0;  // sum |C_j norm_j|, the size of the terms inside r0
   const double* sizes = nullptr;  // the same by order, from 0 to `order`
   static constexpr double wider = 1.2;  // than r0: rays from there to here can still be told to pass no other crossing
-  double steepest_squared[2] = {0, 0};  // G^2 of (4) at s = 1 and `wider`
+  double steepest_squared[2] = {0, 0};  // of (4), k = 1, at s = 1 and `wider`
   int order = -1, given_order = -1;  // of the terms that are not zero, which alone are kept; of all that were given
 
   template <class Parameters, class Arena>
@@ -222,19 +222,20 @@ struct Zernike : ConicDeparture<Zernike> {
     return base.curvature + second * per_radius * per_radius;
   }
 
-  // (4), times r0 and the order for every derivative.
+  // (4)
   template <class T>
   T bound_within(const T& radius, int derivatives) const {
-    const T s = radius * T(per_radius) > T(1) ? T(radius * T(per_radius)) : T(1);
+    const T s = radius * T(per_radius) > T(1) ? T(radius * T(per_radius)) : T(1), per = T(per_radius) / s;
     T sum(0), chebyshev(1), before = s;  // T_n(s), T_(n-1)(s)
     for (int n = 0; n <= order; ++n) {
-      const double power = derivatives == 1 ? 1.0 * n * n : 1.0 * n * n * (n - 1) * (n - 1);
-      sum += T(sizes[n] * power) * chebyshev;
+      double of_chebyshev = 1;  // T_n^(k)(1)
+      for (int k = 0; k < derivatives; ++k) of_chebyshev *= (1.0 * n * n - 1.0 * k * k) / (2 * k + 1);
+      sum += T(sizes[n] * of_chebyshev) * chebyshev;
       const T next = T(2) * s * chebyshev - before;
       before = chebyshev, chebyshev = next;
     }
-    const T per = T(per_radius) / s;
-    return derivatives == 1 ? T(sum * per) : T(sum * per * per);
+    for (int k = 0; k < derivatives; ++k) sum *= per;
+    return sum;
   }
   template <class T>
   T size_of_terms(const T&, const T&) const {
@@ -246,10 +247,6 @@ struct Zernike : ConicDeparture<Zernike> {
     return select<T>(rho_squared <= T(1), T(steepest_squared[0]), select<T>(rho_squared <= T(wider * wider), T(steepest_squared[1]), unknown));
   }
   // For first_crossing.h. Outside r0 the bound grows as T_n does: a step to 1 + n^(-3/2) of the radius keeps that below 10 for n up to 20.
-  template <class T>
-  T bend_within(const T& radius) const {
-    return bound_within(radius, 2);
-  }
   template <class T>
   T reach_from(const T& r) const {
     const T r0 = T(1) / T(per_radius), further = T(1) + T(1 / (order * std::sqrt(static_cast<double>(order))));

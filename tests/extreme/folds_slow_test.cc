@@ -45,7 +45,7 @@ struct Looks {
     return zernike.height(x, y);
   }
   template <class T>
-  T bend_within(const T& radius) const { return zernike.bend_within(radius); }
+  T bound_within(const T& radius, int derivatives) const { return zernike.bound_within(radius, derivatives); }
   template <class T>
   T reach_from(const T& radius) const { return zernike.reach_from(radius); }
 
@@ -63,7 +63,8 @@ struct Looks {
 };
 
 // 2026-11-22: of these 40000 rays, 59 were given a point behind the hit (system 7, ray 31: path 2.219272533105815 for 4.814077458643277),
-// 38 a point where the hit has ended at a fold, and 2148 that have a hit were lost as not_converged.
+// 38 a point where the hit has ended at a fold, and 2148 that have a hit were lost as not_converged. On the same day, after the first mending,
+// 3 were given a point behind two folds between two looks, where lambda falls and rises again.
 TEST(Folds, HitIsTheOneContinuousWithTheBaseConics) {
   Wild wild;
   std::map<std::string, int> counts;
@@ -80,17 +81,6 @@ TEST(Folds, HitIsTheOneContinuousWithTheBaseConics) {
       const auto truth = exact.meet(vec3_cast<Extended>(ray.p), vec3_cast<Extended>(ray.d));
       EXPECT_EQ(counted.meet(ray.p, ray.d).status, ours.status);
       looks.push_back(counted.count);
-      if (ours.status == Status::ok && truth.status == Status::not_converged) {
-        // The share of the departure at which the hit ends falls and rises again between two looks: the point is still the first on the way.
-        const Extended start = exact.base.meet(vec3_cast<Extended>(ray.p), vec3_cast<Extended>(ray.d)).path;
-        const auto side = [&](Extended t) {
-          const Vec3<Extended> at = vec3_cast<Extended>(ray.p) + t * vec3_cast<Extended>(ray.d);
-          return at.z < exact.height(at.x, at.y, 1).z;
-        };
-        for (int k = 1; k < 1000; ++k) ASSERT_EQ(side(start + (Extended(ours.path) - start) * k / 1000), side(start)) << system << ' ' << i;
-        ++counts["ended at a fold between two looks"];
-        continue;
-      }
       ASSERT_EQ(ours.status, truth.status) << system << ' ' << i;
       ++counts[std::string(surface::status_names[static_cast<std::size_t>(ours.status)])];
       if (ours.status != Status::ok) continue;

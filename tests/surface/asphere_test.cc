@@ -63,7 +63,7 @@ TEST(Asphere, BoundsOfItsSlopesHold) {
   for (double r = .25; r < 6; r += .25) {
     const double steepest = 2e-2 * r + 6e-3 * r * r + 12e-4 * r * r * r + 7e-6 * std::pow(r, 6);
     EXPECT_NEAR(surface.steepest_squared_within(r * r), steepest * steepest, 1e-14 * steepest * steepest);
-    EXPECT_NEAR(surface.bend_within(r), 2e-2 + 12e-3 * r + 36e-4 * r * r + 42e-6 * std::pow(r, 5), 1e-14);
+    EXPECT_NEAR(surface.bound_within(r, 2), 2e-2 + 12e-3 * r + 36e-4 * r * r + 42e-6 * std::pow(r, 5), 1e-14);
     EXPECT_GT(surface.reach_from(r), r);
   }
 }

@@ -205,8 +205,11 @@ TEST(Contract, BoundsOfSlopesAndSecondDerivativesHold) {
         const double r_squared = line.start.x * line.start.x + line.start.y * line.start.y;
         EXPECT_LE(sum.along_x * sum.along_x + sum.along_y * sum.along_y, shape.steepest_squared_within(r_squared) * (1 + 1e-9));
         const auto of_sum = [&](const Fifty& t) { return shape.sum(Fifty(at.x + t * d.x), Fifty(at.y + t * d.y)).value; };
-        const double bend = std::abs(static_cast<double>(Fifty((of_sum(h) - 2 * of_sum(0) + of_sum(-h)) / (h * h))));
-        EXPECT_LE(bend, shape.bend_within(std::sqrt(r_squared)) * (1 + 1e-9) * (line.d.x * line.d.x + line.d.y * line.d.y) + 1e-15);
+        const double sine = std::hypot(line.d.x, line.d.y), bend = std::abs(static_cast<double>(Fifty((of_sum(h) - 2 * of_sum(0) + of_sum(-h)) / (h * h))));
+        EXPECT_LE(bend, shape.bound_within(std::sqrt(r_squared), 2) * (1 + 1e-9) * sine * sine + 1e-15);
+        const Fifty w("1e-10");  // its square times the fifth derivative is what the quotient is off by
+        const double third = std::abs(static_cast<double>(Fifty((of_sum(2 * w) - 2 * of_sum(w) + 2 * of_sum(-w) - of_sum(-2 * w)) / (2 * w * w * w))));
+        EXPECT_LE(third, shape.bound_within(std::sqrt(r_squared), 3) * (1 + 1e-9) * sine * sine * sine + 1e-13);
         ++slopes;
       }
     }
@@ -216,15 +219,15 @@ TEST(Contract, BoundsOfSlopesAndSecondDerivativesHold) {
 }
 
 // On surfaces that fold under slanted lines: the hit is the one continuous with the base's, by small steps from there to where lambda = g/(g - f)
-// (first_crossing.h) comes to 1, stops to rise, or the surface ends. first_crossing.h looks at lambda
-// where it steps alone, so it may pass a dip of lambda, never a crossing: one line of the polynomial does.
+// (first_crossing.h) comes to 1, stops to rise, or the surface ends. 2026-11-22: lambda was looked at where a step ends alone, and one line of the polynomial
+// was given a hit 8.9 mm behind its fold.
 TEST(Contract, HitIsTheOneContinuousWithTheBase) {
   numerics::Arena arena;
   const auto asphere = made<Asphere>({{{"radius_mm", 12}, {"conic_constant", -.8}}, {{4, 6e-3}, {6, -3e-4}, {7, 1e-6}}}, arena);
   const auto xy = made<XyPolynomial>({{{"radius_mm", 20}}, {{4, .1}, {6, .02}, {8, -.03}, {12, .004}}}, arena);
   const auto biconic = Biconic::of({1 / 9.0, .3}, {1 / 20.0, -1.5});
   const auto toroid = made<Toroid>({{{"radius_rotation_mm", 25}, {"radius_mm", -30}}, {{2, .2}, {4, -.02}, {6, 4e-4}}}, arena);
-  const auto check = [](const char* name, const auto& shape, int least_slow, int most_dips) {
+  const auto check = [](const char* name, const auto& shape, int least_slow) {
     SCOPED_TRACE(name);
     int agree = 0, differ = 0, hits = 0, folded = 0, slow = 0;
     for (const Line& line : lines_to(6, 88, 2000)) {
@@ -251,12 +254,12 @@ TEST(Contract, HitIsTheOneContinuousWithTheBase) {
     EXPECT_GT(hits, 900);
     EXPECT_GT(slow, least_slow);
     EXPECT_GT(agree, 1500);
-    EXPECT_LE(differ, most_dips) << hits << " hits, " << folded << " folded";
+    EXPECT_EQ(differ, 0) << hits << " hits, " << folded << " folded";
   };
-  check("asphere", asphere, 100, 0);
-  check("xy polynomial", xy, 100, 1);
-  check("biconic", biconic, 20, 0);
-  check("toroid", toroid, 100, 0);
+  check("asphere", asphere, 100);
+  check("xy polynomial", xy, 100);
+  check("biconic", biconic, 20);
+  check("toroid", toroid, 100);
 }
 
 }  // namespace
