@@ -65,6 +65,7 @@ struct Model {
   std::string file;
   std::vector<Document> documents;  // the file and the bases that it extends
   std::string name, source;
+  std::string eye;  // "right", "left"; "": not said
   std::vector<double> wavelengths_nm;
   std::optional<double> primary_nm;  // none: the first wavelength
   Aperture aperture;
