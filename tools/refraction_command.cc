@@ -57,7 +57,7 @@ int refraction_command(const RefractionOptions& options) {
   report.results.resize(scene.fields.size() * scene.wavelengths.size());
   numerics::share_blocks(report.results.size(), options.thread_count, [&] {
     return [&](std::size_t i) {
-      report.results[i] = refraction(scene, scene.wavelengths[i % scene.wavelengths.size()], scene.fields[i / scene.wavelengths.size()], {.vertex_distance = options.vertex_distance_mm, .wavefront = {}});
+      report.results[i] = analysis::refraction(scene, scene.wavelengths[i % scene.wavelengths.size()], scene.fields[i / scene.wavelengths.size()], {.vertex_distance = options.vertex_distance_mm, .wavefront = {}});
     };
   });
   fmt::print("{}", options.json ? refraction_json(report) : refraction_text(report));

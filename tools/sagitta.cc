@@ -94,7 +94,7 @@ void add_verify(CLI::App& app, int& status) {
 
 void add_refraction(CLI::App& app, int& status) {
   static RefractionOptions options;
-  CLI::App* command = app.add_subcommand("refraction", "The refraction of an eye: sphere, cylinder, axis, M, J0 and J45, three ways");
+  CLI::App* command = app.add_subcommand("refraction", "The refraction of an eye: sphere, cylinder, axis, M, J0 and J45, four ways");
   command->add_option("SYSTEM", options.system, "prescription (YAML) from air into the eye")->required();
   command->add_option("--vertex-mm", options.vertex_distance_mm, "plane of the refraction, mm before the cornea's vertex: 0 at the cornea, 12 to 14 for spectacles")
       ->check(from_to(-1e3, 1e3))->capture_default_str();

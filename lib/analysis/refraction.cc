@@ -57,6 +57,20 @@ Power by_least_squares(const std::vector<double>& osa_um, double pupil_radius) {
   return {defocus + astigmatism * osa_um[5], astigmatism * osa_um[3], defocus - astigmatism * osa_um[5]};
 }
 
+// The Hessian of a sum of Zernike polynomials at the centre.
+Power by_terms_at_centre(const std::vector<double>& osa_um, double pupil_radius) {
+  double of[3] = {0, 0, 0};  // rho^2 of m = -2, 0, 2
+  for (std::size_t j = 0; j < osa_um.size(); ++j) {
+    const auto [n, m] = numerics::zernike_term(numerics::ZernikeIndexing::osa, static_cast<int>(j));
+    if (n == 0 || (m != 0 && std::abs(m) != 2)) continue;
+    const int k = n / 2, sign = k % 2 == 0 ? -1 : 1;
+    const double radial = sign * k * (k + 1) / (m == 0 ? 1.0 : 2.0), norm = std::sqrt((n + 1.0) * (m == 0 ? 1 : 2));
+    of[m / 2 + 1] += osa_um[j] * norm * radial;
+  }
+  const double scale = 2 / (pupil_radius * pupil_radius);
+  return {scale * (of[1] + of[2]), scale * of[0], scale * (of[1] - of[2])};
+}
+
 constexpr double pupil_step = .05;  // h of (5) and of the differences of (6), of the pupil's radius
 
 // (5), along 0, 45, 90 and 135 degrees.
@@ -149,12 +163,15 @@ RefractionResult refraction(const scene::Scene& scene, const scene::Wavelength& 
     const Power there = moved(at_pupil, a, index);
     return Power{there.uu, -there.uv, there.vv};  // OSA's frame
   };
-  Refraction result{{}, reported(wanted(line, across(line, *curvature))), reported(*far_point)};
+  Refraction result{{}, {}, reported(wanted(line, across(line, *curvature))), reported(*far_point)};
   WavefrontRequest for_fit = request.wavefront;
   for_fit.indexing = numerics::ZernikeIndexing::osa;
   const WavefrontResult measured = wavefront(scene, wavelength, field, for_fit);
-  if (measured.wavefront && measured.wavefront->zernike)
-    result.least_squares = reported(wanted(line, across(line, by_least_squares(measured.wavefront->zernike->coefficients, scene.pupil.semi_diameter))));
+  if (measured.wavefront && measured.wavefront->zernike) {
+    const std::vector<double>& terms = measured.wavefront->zernike->coefficients;
+    result.least_squares = reported(wanted(line, across(line, by_least_squares(terms, scene.pupil.semi_diameter))));
+    result.at_centre = reported(wanted(line, across(line, by_terms_at_centre(terms, scene.pupil.semi_diameter))));
+  }
   return {result, {}};
 }
 

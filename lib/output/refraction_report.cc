@@ -28,7 +28,9 @@ std::string dioptres(double value) { return std::isfinite(value) ? fmt::format("
 
 std::vector<std::string> cells(const Power& power) {
   const analysis::Spectacles lens = spectacles(power);
-  return {dioptres(power.M()), dioptres(power.J0()), dioptres(power.J45()), dioptres(lens.sphere), dioptres(lens.cylinder), fmt::format("{:.1f}", lens.axis_deg)};
+  const bool has_axis = lens.cylinder <= -.00005;  // as printed
+  const double axis = std::round(10 * lens.axis_deg) / 10;
+  return {dioptres(power.M()), dioptres(power.J0()), dioptres(power.J45()), dioptres(lens.sphere), dioptres(lens.cylinder), has_axis ? fmt::format("{:.1f}", axis == 0 ? 180 : axis) : "-"};
 }
 ordered_json power_json(const Power& power) {
   const analysis::Spectacles lens = spectacles(power);
@@ -74,6 +76,7 @@ std::string refraction_text(const RefractionReport& report) {
       continue;
     }
     if (result.refraction->least_squares) row("least squares", *result.refraction->least_squares);
+    if (result.refraction->at_centre) row("at the centre", *result.refraction->at_centre);
     row("paraxial", result.refraction->paraxial);
     row("far point", result.refraction->far_point);
   }
@@ -103,6 +106,7 @@ std::string refraction_json(const RefractionReport& report) {
     one["refraction"] = nullptr;
     if (result.refraction)
       one["refraction"] = {{"least_squares", result.refraction->least_squares ? power_json(*result.refraction->least_squares) : ordered_json(nullptr)},
+                           {"at_centre", result.refraction->at_centre ? power_json(*result.refraction->at_centre) : ordered_json(nullptr)},
                            {"paraxial", power_json(result.refraction->paraxial)},
                            {"far_point", power_json(result.refraction->far_point)}};
     else one["reason"] = result.reason;
