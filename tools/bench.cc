@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ray-surfaces per second of every shape, by the tracer that all commands use, and their ratios to the conic.
 //
-// The surface is like a cornea's front (R = 7.72 mm, beam of 4 mm). Plane, conic and Zernike: 65536 rays through eight
+// The surface is like a cornea's front (R = 7.72 mm, beam of 4 mm). Plane, conic, asphere and the like: 65536 rays through eight
 // copies of it, 0.5 mm apart, alternately from air into 1.376 and back, so that the tracer's blocks stay in the cache as
 // they do in a lens. Facets: 2^20 rays through one surface, so that every ray comes to facets it has not just seen; their
 // points are uniformly random over a disc of 8 mm. `bundle` is collimated, in the order of the hexapolar pattern, as a
@@ -86,6 +86,10 @@ struct Case {
 };
 constexpr Case cases[]{{"plane", "plane", 0, false},
                        {"conic", "conic", 0, false},
+                       {"asphere_5", "asphere", 0, false},
+                       {"biconic", "biconic", 0, false},
+                       {"toroid_5", "toroid", 0, false},
+                       {"xy_polynomial_27", "xy_polynomial", 0, false},
                        {"zernike_36", "zernike", 0, false},
                        {"linear_4e3/bundle", "linear", 4'000, false},
                        {"linear_4e3/random", "linear", 4'000, true},

@@ -40,7 +40,13 @@ prescription::Shape shape_of(const std::string& kind, int point_count, double da
   shape.kind = point_count > 0 ? "delaunay" : kind;
   auto& given = shape.parameters;
   given.numbers = {{"radius_mm", radius}, {"conic_constant", conic_constant}, {"normalization_radius_mm", 3},
-                   {"smoothing_um", 0}, {"max_edge_mm", std::numeric_limits<double>::infinity()}};
+                   {"radius_x_mm", radius}, {"radius_y_mm", 1.02 * radius}, {"conic_constant_x", conic_constant}, {"conic_constant_y", 1.1 * conic_constant},
+                   {"radius_rotation_mm", radius}, {"smoothing_um", 0}, {"max_edge_mm", std::numeric_limits<double>::infinity()}};
+  if (kind == "xy_polynomial") {
+    for (int term = 3; term <= 27; ++term) given.indexed["coefficients"].push_back({term, (term % 2 == 0 ? 1e-3 : -1e-3) / term});
+  } else {
+    given.indexed["coefficients"] = {{4, 1e-4}, {6, -1e-5}, {8, 1e-6}, {10, -1e-7}, {12, 1e-8}};
+  }
   given.texts = {{"indexing", "osa"}, {"interpolation", kind}};
   // 36 terms of OSA, of the size of a cornea's: falling with the order, signs in turn.
   for (int index = 0; index < 36; ++index) {

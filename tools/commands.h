@@ -59,6 +59,15 @@ struct RaysOptions : SystemOptions {
 };
 int rays_command(const RaysOptions& options);
 
+struct RefractionOptions {
+  std::string system;
+  double vertex_distance_mm = 0;
+  std::string spectrum;  // "400:700:10"; "": the system's wavelengths
+  int thread_count = 0;
+  bool json = false;
+};
+int refraction_command(const RefractionOptions& options);
+
 struct CompareOptions : JobOptions {
   std::vector<std::string> systems;
   std::string surface, points, format = "xyz", axes = "local";  // variants of one surface, made from points

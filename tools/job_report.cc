@@ -34,6 +34,7 @@ output::Report make_report(const prescription::Model& model, const scene::Compil
   report.system = model.name.empty() ? std::filesystem::path(model.file).stem().string() : model.name;
   report.version = version();
   for (const auto& [name, value] : model.parameters) report.parameters.emplace_back(name, value);
+  report.eye = model.eye;
   report.fields_are_heights = model.fields.kind == prescription::FieldKind::object_heights_mm;
   for (const auto& field : model.fields.points) report.fields.push_back({field.x, field.y});
   report.wavelengths_nm = model.wavelengths_nm;

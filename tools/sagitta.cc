@@ -114,6 +114,18 @@ void add_verify(CLI::App& app, int& status) {
   command->callback([&status] { status = verify_command(options); });
 }
 
+void add_refraction(CLI::App& app, int& status) {
+  static RefractionOptions options;
+  CLI::App* command = app.add_subcommand("refraction", "The refraction of an eye: sphere, cylinder, axis, M, J0 and J45, four ways");
+  command->add_option("SYSTEM", options.system, "prescription (YAML) from air into the eye")->required();
+  command->add_option("--vertex-mm", options.vertex_distance_mm, "plane of the refraction, mm before the cornea's vertex: 0 at the cornea, 12 to 14 for spectacles")
+      ->check(from_to(-1e3, 1e3))->capture_default_str();
+  command->add_option("--spectrum", options.spectrum, "FROM:TO:STEP in nm in place of the system's wavelengths, for the longitudinal chromatic aberration");
+  command->add_option("--threads", options.thread_count, "threads (default: as many as the machine runs)")->check(CLI::Range(1, 1024));
+  command->add_flag("--json", options.json, "print JSON in place of the table");
+  command->callback([&status] { status = refraction_command(options); });
+}
+
 void add_compare(CLI::App& app, int& status) {
   static CompareOptions options;
   CLI::App* command = app.add_subcommand("compare", "Trace several systems by the rays of the first, and show what differs");
@@ -268,6 +280,7 @@ int main(int argc, char** argv) {
   add_trace(app, status);
   add_explain(app, status);
   add_verify(app, status);
+  add_refraction(app, status);
   add_compare(app, status);
   add_rays(app, status);
   add_check(app, status);

@@ -46,9 +46,10 @@ inline constexpr Range positive{0, std::numeric_limits<double>::infinity(), true
 inline constexpr Range not_negative{0};
 inline constexpr Range nonzero_or_infinite{.zero = false, .infinite = true};
 
-// The legal indices of an `indexed` value; a list counts from the first.
+// The legal indices of an `indexed` value; a list counts from the first, where it can be meant.
 struct IndexRange {
   int first = 0, last = 100'000, step = 1;
+  bool is_list = true;
 
   bool contains(int index) const { return index >= first && index <= last && (index - first) % step == 0; }
 };
@@ -61,7 +62,7 @@ struct Key {
   Range range = any_number;          // of a number, and of each element of a vector
   double fallback = 0;               // of a number that is not given
   std::string_view choices = {};     // of a text: "osa|noll|fringe"; the first is the default unless required
-  // Of an `indexed` value: the rule of its indices, and, where they depend on a choice, the key of the choice, earlier in the table.
+  // Of an `indexed` value: the rule of its indices, and the key of the choice, earlier in the table, that they depend on, if any.
   std::string_view indexed_by = {};
   IndexRange (*indices)(std::string_view choice) = nullptr;  // none: IndexRange{}
   // Of a key that only some choices have a use for: the key of the choice, earlier in the table, and those choices.

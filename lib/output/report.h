@@ -27,6 +27,7 @@ namespace sagitta::output {
 struct Report {
   std::string system, version;
   std::vector<std::pair<std::string, double>> parameters;  // of the system, as they were set
+  std::string eye;  // "right", "left"; "": not said, or not an eye
   bool fields_are_heights = false;
   std::vector<std::array<double, 2>> fields;  // degrees, or mm
   std::vector<double> wavelengths_nm;

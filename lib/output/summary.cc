@@ -58,7 +58,16 @@ ordered_json losses_json(const Report& report, const trace::StatusCounts& rays) 
   return result;
 }
 
-ordered_json wavefront_json(const analysis::WavefrontResult& measured, double pupil_semi_diameter) {
+// From the tracer's frame, x to the examiner's left, to the examiner's own: what is odd in x changes sign.
+std::vector<double> of_examiner(std::vector<double> osa) {
+  for (std::size_t j = 0; j < osa.size(); ++j) {
+    const numerics::ZernikeTerm term = numerics::zernike_term(numerics::ZernikeIndexing::osa, static_cast<int>(j));
+    if (term.m < 0 ? term.m % 2 == 0 : term.m % 2 != 0) osa[j] = -osa[j];
+  }
+  return osa;
+}
+
+ordered_json wavefront_json(const Report& report, const analysis::WavefrontResult& measured) {
   const analysis::Wavefront& wavefront = *measured.wavefront;
   ordered_json result{{"rms_waves", wavefront.rms_waves},
                       {"peak_to_valley_waves", wavefront.peak_to_valley_waves},
@@ -67,9 +76,10 @@ ordered_json wavefront_json(const analysis::WavefrontResult& measured, double pu
                       {"reference_sphere_radius_mm", wavefront.reference_radius}};
   if (wavefront.zernike)
     result["zernike"] = {{"indexing", "osa"},
-                         {"pupil_semi_diameter_mm", pupil_semi_diameter},
-                         {"coefficients_um", wavefront.zernike->coefficients},
+                         {"pupil_semi_diameter_mm", report.first_order.entrance_pupil.semi_diameter},
+                         {"coefficients_um", report.eye.empty() ? wavefront.zernike->coefficients : of_examiner(wavefront.zernike->coefficients)},
                          {"residual_rms_um", wavefront.zernike->residual_rms}};
+  if (wavefront.zernike && !report.eye.empty()) result["zernike"]["frame"] = report.eye + " eye, OSA axes: x to the examiner's right, y up";
   return result;
 }
 
@@ -88,7 +98,7 @@ ordered_json result_json(const Report& report, const analysis::JobResult& result
                     {"geometric_radius_mm", result.spot->geometric_radius}};
   if (result.wavefront) {
     if (result.wavefront->wavefront) {
-      json["wavefront"] = wavefront_json(*result.wavefront, report.first_order.entrance_pupil.semi_diameter);
+      json["wavefront"] = wavefront_json(report, *result.wavefront);
     } else {
       json["wavefront"] = nullptr;
       json["reason"] = result.wavefront->reason;

@@ -77,6 +77,7 @@ struct Model {
   std::vector<Document> documents;  // the file and the bases that it extends
   std::string name, source;
   std::vector<ParameterValue> parameters;  // as they were set, in the order of their declaration
+  std::string eye;  // "right", "left"; "": not said
   std::vector<double> wavelengths_nm;
   std::optional<double> primary_nm;  // none: the first wavelength
   Aperture aperture;

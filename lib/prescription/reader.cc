@@ -102,6 +102,7 @@ Model read_model(const YamlNode& root, const std::vector<Document>& documents, F
   section.number("sagitta");
   model.name = section.text("name").value_or("");
   model.source = section.text("source").value_or("");
+  model.eye = section.text("eye").value_or("");
   if (const YamlNode* node = section.find("wavelengths_nm")) model.wavelengths_nm = read_wavelengths(*node, findings);
   model.primary_nm = section.number("primary_nm");
   media.read_catalogs(section.find("catalogs"));

@@ -121,7 +121,8 @@ ordered_json special(const Key& key) {
 
 ordered_json indexed(const Key& key) {
   const ordered_json by_index{{"type", "object"}, {"patternProperties", {{"^[0-9]+$", number(key.range)}}}, {"additionalProperties", false}};
-  return {{"anyOf", {by_index, list_of(number(key.range), 0)}}};
+  const bool is_list = !key.indices || !key.indexed_by.empty() || key.indices({}).is_list;
+  return is_list ? ordered_json{{"anyOf", {by_index, list_of(number(key.range), 0)}}} : by_index;
 }
 
 ordered_json any_text() { return {{"type", {"string", "number", "boolean"}}, {"minLength", 1}}; }

@@ -188,13 +188,13 @@ std::optional<std::vector<std::pair<int, double>>> read_indexed(const YamlNode& 
   if (node.kind == YamlNode::Kind::mapping) {
     for (const YamlNode::Entry& entry : node.entries)
       add(parse_index(entry.key), entry.key, entry.key_place, *entry.value);
-  } else if (node.kind == YamlNode::Kind::sequence) {
+  } else if (node.kind == YamlNode::Kind::sequence && indices.is_list) {
     for (std::size_t i = 0; i < node.items.size(); ++i) {
       const int index = indices.first + indices.step * static_cast<int>(i);
       add(index, std::to_string(index), node.items[i]->place, *node.items[i]);
     }
   } else {
-    refuse(node, label, "a mapping {index: value, ...} or a list", findings);
+    refuse(node, label, indices.is_list ? "a mapping {index: value, ...} or a list" : "a mapping {index: value, ...}", findings);
     return std::nullopt;
   }
   if (!all_legal) return std::nullopt;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where a ray meets an analytic surface, by Newton's method without a safeguard, to a tolerance that is asked for: what a study of
-// tolerances needs. (The tracer's own iterations end at rounding: surface/zernike.h, surface/departure.h.)
+// tolerances needs. (The tracer's own iterations end at rounding: surface/conic_departure.h, surface/departure.h.)
 //
 //   f(t) = z(t) - S(x(t), y(t)),   t -> t - f/f',   f' = N - L dS/dx - M dS/dy                                      (1)
 //

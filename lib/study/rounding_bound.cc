@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <limits>
 
 #include "lib/study/rounding_bound_internal.h"
@@ -91,8 +92,8 @@ Met met_height(const Shape& shape, const HeightRounding& off, int directions, co
   return by_normal(hit, normal, (at.turn + length_error) * at.normal_length + normal + 4 * u * (std::abs(d.x * n.x) + std::abs(d.y * n.y) + std::abs(d.z)), at.s);
 }
 
-HeightRounding height_rounding(const surface::Zernike& zernike, const Place& at) {
-  const double x = at.hit.x, y = at.hit.y, X = std::abs(x * zernike.per_radius), Y = std::abs(y * zernike.per_radius), rho = std::max(1.0, std::hypot(X, Y));
+surface::SumRounding sum_rounding(const surface::Zernike& zernike, double x, double y) {
+  const double X = std::abs(x * zernike.per_radius), Y = std::abs(y * zernike.per_radius), rho = std::max(1.0, std::hypot(X, Y));
   const int order = zernike.order;
   double V = 0, chebyshev = 1, before = rho;
   for (int i = 0; i <= order; ++i) {
@@ -112,17 +113,43 @@ HeightRounding height_rounding(const surface::Zernike& zernike, const Place& at)
       }
     sum *= 2 * (order + 3) * u, slope *= 2 * (order + 3) * u * zernike.per_radius;
   }
-  // The conic under it, of which the slope is c r/G.
-  const double c = std::abs(zernike.base.curvature), m = std::abs(1 + zernike.base.conic_constant), r = std::hypot(x, y);
-  const double base_z = zernike.base.sag(x, y), p = std::abs(at.hit.z - base_z), w = std::abs(base_z);
-  const double G = 1 - (1 + zernike.base.conic_constant) * zernike.base.curvature * base_z, G_1 = std::min(1.0, G * G);
-  const auto start = zernike.base.meet(at.start, at.d);
-  const double scale = 2 * (norm(at.hit) + norm(at.hit - start.point));
-  const double e = 4 * u * (std::abs(at.hit.z) + p + w + zernike.coefficient_sum + V) + sum + (6 * u * (.5 * c * (r * r + m * w * w) + w + p) + 4 * u * w) / G_1 + 2 * u * scale;
-  const double base_slope = c * r * (4 * u + (4 * u * (1 + m * c * c * r * r + m * c * w) + m * c * e) / G_1) / std::sqrt(G_1);
-  return {e, slope + base_slope, 8 * u * scale};
+  return {sum, slope, zernike.size_at_any_place + V};
 }
-Met met(const surface::Zernike& zernike, const Place& at, const Vec3<Exact>& hit) { return met_height(zernike, height_rounding(zernike, at), 4, hit, at); }
+
+template <class Shape>
+concept DepartsFromConic = std::derived_from<Shape, surface::ConicDeparture<Shape>>;
+template <class Shape>
+concept DepartsFromQuadric = std::derived_from<Shape, surface::QuadricDeparture<Shape>>;
+
+template <DepartsFromConic Shape>
+HeightRounding height_rounding(const Shape& shape, const Place& at) {
+  const double x = at.hit.x, y = at.hit.y;
+  surface::SumRounding of_sum;
+  if constexpr (requires { shape.sum_rounding(x, y); }) of_sum = shape.sum_rounding(x, y);
+  else of_sum = sum_rounding(shape, x, y);
+  // The conic under it, of which the slope is c r/G.
+  const double c = std::abs(shape.base.curvature), m = std::abs(1 + shape.base.conic_constant), r = std::hypot(x, y);
+  const double base_z = shape.base.sag(x, y), p = std::abs(at.hit.z - base_z), w = std::abs(base_z);
+  const double G = 1 - (1 + shape.base.conic_constant) * shape.base.curvature * base_z, G_1 = std::min(1.0, G * G);
+  const auto start = shape.base.meet(at.start, at.d);
+  const double scale = 2 * (norm(at.hit) + norm(at.hit - start.point));
+  const double e = 4 * u * (std::abs(at.hit.z) + p + w + of_sum.terms) + of_sum.value + (6 * u * (.5 * c * (r * r + m * w * w) + w + p) + 4 * u * w) / G_1 + 2 * u * scale;
+  const double base_slope = c * r * (4 * u + (4 * u * (1 + m * c * c * r * r + m * c * w) + m * c * e) / G_1) / std::sqrt(G_1);
+  return {e, of_sum.slope + base_slope, 8 * u * scale};
+}
+// What the iteration ends with, and the stale place, as there.
+template <DepartsFromQuadric Shape>
+HeightRounding height_rounding(const Shape& shape, const Place& at) {
+  const surface::SagRounding of_sag = shape.rounding(at.hit.x, at.hit.y);
+  const auto start = shape.base.meet(at.start, at.d);
+  const double scale = 2 * (norm(at.hit) + norm(at.hit - start.point));
+  return {of_sag.height + 4 * u * (std::abs(at.hit.z) + shape.height(at.hit.x, at.hit.y).magnitude) + 2 * u * scale, of_sag.slope, 8 * u * scale};
+}
+template <class Shape>
+  requires DepartsFromConic<Shape> || DepartsFromQuadric<Shape>
+Met met(const Shape& shape, const Place& at, const Vec3<Exact>& hit) {
+  return met_height(shape, height_rounding(shape, at), 4, hit, at);
+}
 
 HeightRounding facet_rounding(const surface::Facets& facets, const Place& at) {
   const surface::Mesh& mesh = *facets.mesh;

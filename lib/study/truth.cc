@@ -14,9 +14,7 @@
 namespace sagitta::study {
 namespace {
 
-template <class S>
-inline constexpr bool is_analytic = std::is_same_v<S, surface::Plane> || std::is_same_v<S, surface::Sphere> ||
-                                    std::is_same_v<S, surface::Conic> || std::is_same_v<S, surface::Zernike>;
+using surface::is_analytic;
 
 // An analytic shape with a roughness on its sag.
 template <class S>

@@ -50,9 +50,9 @@ NearestToVertex<T> nearest_to_vertex(const Vec3<T>& start, const Vec3<T>& d) {
   return {path, start + path * d};
 }
 
-// (5), from that point and (3). axial = (1+K) c.
+// (5), from that point and (3). axial = (1+K) c; the curvatures along x and y differ for other quadrics than conics (quadric.h).
 template <class T>
-Crossing<T> crossing_of_conic(const NearestToVertex<T>& from, const Vec3<T>& d, const T& c, const T& axial, const T& A, const T& B, const T& C) {
+Crossing<T> crossing_of_quadric(const NearestToVertex<T>& from, const Vec3<T>& d, const T& c_x, const T& c_y, const T& axial, const T& A, const T& B, const T& C) {
   using std::sqrt;
   const T root = sqrt(B * B - A * C);  // NaN: the line passes by
   const auto is_backward = d.z < T(0);
@@ -63,7 +63,7 @@ Crossing<T> crossing_of_conic(const NearestToVertex<T>& from, const Vec3<T>& d, 
   const T nz = T(1) - axial * point.z;                 // (4)
   const auto hit = (nz > T(0)) & (t - t == T(0));      // t - t: neither NaN nor infinite
   const T path = from.path + t;  // formed whether or not there is a hit: loops over rays have no branches
-  return {select<T>(hit, path, not_a_number<T>()), point, {-c * point.x, -c * point.y, nz}, along,
+  return {select<T>(hit, path, not_a_number<T>()), point, {-c_x * point.x, -c_y * point.y, nz}, along,
           StatusIn<T>::either(hit, Status::ok, Status::missed)};
 }
 
@@ -111,7 +111,7 @@ struct Conic {
     const T A = c * (d.x * d.x + d.y * d.y + one_plus_K * d.z * d.z);  // (3)
     const T B = d.z - c * (d.x * p.x + d.y * p.y + one_plus_K * d.z * p.z);
     const T C = c * (p.x * p.x + p.y * p.y + one_plus_K * p.z * p.z) - T(2) * p.z;
-    return crossing_of_conic(from, d, c, T(one_plus_K * c), A, B, C);
+    return crossing_of_quadric(from, d, c, c, T(one_plus_K * c), A, B, C);
   }
 };
 

@@ -39,22 +39,39 @@ struct BoundedStep {
   T length, g_2, p_2, g_3, p_3;
 };
 
-// By (2). The surface has base, height(x, y), and
-//   T reach_from(r): a radius R > r to bound p within;   T bound_within(R, k): of the k-th derivatives of p along lines, k = 2 and 3.
+// By (2). The surface has base, height(x, y), and departs from a conic with
+//   T reach_from(r): a radius R > r to bound p within;   T bound_within(R, k): of the k-th derivatives of p along lines, k = 2 and 3;
+// or else it bounds its second derivative along the line up to a distance h to either side, and so does its base,
+//   T bend_on(at, d, h).
 template <class T, class Surface>
 BoundedStep<T> bounded_step(const Surface& surface, const Vec3<T>& at, const Vec3<T>& d, const T& F, const T& falls) {
   using std::abs, std::sqrt;
-  const T c(surface.base.curvature), q = (T(1) + T(surface.base.conic_constant)) * c * c;
-  const T s_squared = d.x * d.x + d.y * d.y, s = sqrt(s_squared);
-  const T r = sqrt(at.x * at.x + at.y * at.y), radicand = T(1) - q * r * r;
-  T R = surface.reach_from(r);
-  if (!(T(1) - q * R * R >= radicand / T(2))) R = sqrt((T(1) - radicand / T(2)) / q);
-  const T u_squared = q < T(0) ? T(1) : T(T(1) - q * R * R), u_cubed = u_squared * sqrt(u_squared), g_2 = s_squared * abs(c) / u_cubed;
-  const T per_g_2 = q < T(0) ? T(T(1.16) * sqrt(-q)) : T(T(3) * q * R / u_squared);  // 6/sqrt(27) < 1.16
-  const T p_2 = s_squared * surface.bound_within(R, 2), p_3 = s * s_squared * surface.bound_within(R, 3);
-  const T safe = T(2) * F / (falls + sqrt(falls * falls + T(2) * (g_2 + p_2) * F));
-  const T farthest = s > T(0) ? T((R - r) / s) : safe;
-  return {safe <= farthest ? safe : farthest, g_2, p_2, s * g_2 * per_g_2, p_3};
+  const auto safe_with = [&](const T& bend) { return T(T(2) * F / (falls + sqrt(falls * falls + T(2) * bend * F))); };
+  if constexpr (requires { surface.bend_on(at, d, F); }) {
+    const T most = F + abs(at.x) + abs(at.y) + abs(at.z), at_most = safe_with(surface.bend_on(at, d, T(0))), unknown(std::numeric_limits<double>::infinity());
+    T h = at_most <= most ? at_most : most, bend(0);
+    for (int halving = 0; halving < 60; ++halving, h = h / T(2)) {
+      bend = surface.bend_on(at, d, h);
+      const T safe = safe_with(bend);
+      if (T(2) * safe >= h) {
+        h = safe <= h ? safe : h;
+        break;
+      }
+    }
+    const T g_2 = surface.base.bend_on(at, d, h);
+    return {h, g_2, bend + g_2, unknown, unknown};
+  } else {
+    const T c(surface.base.curvature), q = (T(1) + T(surface.base.conic_constant)) * c * c;
+    const T s_squared = d.x * d.x + d.y * d.y, s = sqrt(s_squared);
+    const T r = sqrt(at.x * at.x + at.y * at.y), radicand = T(1) - q * r * r;
+    T R = surface.reach_from(r);
+    if (!(T(1) - q * R * R >= radicand / T(2))) R = sqrt((T(1) - radicand / T(2)) / q);
+    const T u_squared = q < T(0) ? T(1) : T(T(1) - q * R * R), u_cubed = u_squared * sqrt(u_squared), g_2 = s_squared * abs(c) / u_cubed;
+    const T per_g_2 = q < T(0) ? T(T(1.16) * sqrt(-q)) : T(T(3) * q * R / u_squared);  // 6/sqrt(27) < 1.16
+    const T p_2 = s_squared * surface.bound_within(R, 2), p_3 = s * s_squared * surface.bound_within(R, 3);
+    const T safe = safe_with(T(g_2 + p_2)), farthest = s > T(0) ? T((R - r) / s) : safe;
+    return {safe <= farthest ? safe : farthest, g_2, p_2, s * g_2 * per_g_2, p_3};
+  }
 }
 
 // A place on the way.
@@ -84,6 +101,7 @@ Crossing<T> first_crossing(const Surface& surface, const Crossing<T>& start, con
   T sense(0), sign(0);  // of the way, and of f on it
   BoundedStep<T> step{};
   OnTheWay<T> here{};
+  bool is_halved = false;  // the step: then the next one is at most twice as long
   for (int look = 0; look < most_first_crossing_looks; ++look) {
     const T t = here.t + sense * step.length;
     if (look > 0 && !(sense * (t - here.t) > T(0))) break;  // NaN too
@@ -106,6 +124,7 @@ Crossing<T> first_crossing(const Surface& surface, const Crossing<T>& start, con
     const bool is_same_place = step.length * (abs(d.x) + abs(d.y)) <= T(4) * eps * scale;
     if (!is_same_place && !rises_between(here, there, step)) {
       step.length = step.length / T(2);
+      is_halved = true;
       continue;
     }
     if (at_rounding || is_last) {
@@ -113,8 +132,11 @@ Crossing<T> first_crossing(const Surface& surface, const Crossing<T>& start, con
       const T last = at_rounding ? t : t + sense * newton;
       return {start.path + last, origin + last * d, {-h.dz_dx, -h.dz_dy, T(1)}, slope, Status::ok};
     }
+    const T longest = is_halved ? T(T(2) * step.length) : T(std::numeric_limits<double>::infinity());
     here = there;
     step = bounded_step<T>(surface, at, d, here.F, here.falls);
+    is_halved = step.length > longest;
+    if (is_halved) step.length = longest;
   }
   return no_crossing<T>(Status::not_converged);
 }

@@ -8,22 +8,28 @@
 #include <type_traits>
 #include <variant>
 
+#include "lib/surface/asphere.h"
+#include "lib/surface/biconic.h"
 #include "lib/surface/conic.h"
 #include "lib/surface/facets.h"
 #include "lib/surface/patches.h"
 #include "lib/surface/plane.h"
 #include "lib/surface/radial.h"
 #include "lib/surface/sphere.h"
+#include "lib/surface/toroid.h"
+#include "lib/surface/xy_polynomial.h"
 #include "lib/surface/zernike.h"
 
 namespace sagitta::surface {
 
-using Shape = std::variant<Plane, Sphere, Conic, Zernike, Facets, Patches, RadialPatches<RadialFunction::cubic>,
+using Shape = std::variant<Plane, Sphere, Conic, Asphere, Biconic, Toroid, XyPolynomial, Zernike, Facets, Patches, RadialPatches<RadialFunction::cubic>,
                            RadialPatches<RadialFunction::thin_plate>, RadialPatches<RadialFunction::multiquadric>>;
 
 // Shapes that are met in lanes, by a formula.
 template <class S>
 inline constexpr bool has_closed_form = std::is_same_v<S, Plane> || std::is_same_v<S, Sphere> || std::is_same_v<S, Conic>;
+template <class S>
+inline constexpr bool is_analytic = !requires { S::is_made_of_data; };
 template <class S>
 inline constexpr bool has_unit_normals = requires { S::has_unit_normals; };
 
@@ -43,10 +49,14 @@ inline std::size_t data_bytes(const Shape& shape) {
   }, shape);
 }
 
-// The shape of fewest operations that is the same surface: a Zernike surface without terms is its conic, a conic of K = 0 a
-// sphere, one of curvature 0 a plane.
+// The shape of fewest operations that is the same surface: what departs from a conic by nothing is that conic, a biconic of
+// equal sections too, a conic of K = 0 a sphere, one of curvature 0 a plane.
 inline Shape least_form(const Shape& shape) {
-  if (const auto* zernike = std::get_if<Zernike>(&shape); zernike && zernike->coefficient_sum == 0) return least_form(zernike->base);
+  if (const auto* zernike = std::get_if<Zernike>(&shape); zernike && zernike->size_at_any_place == 0) return least_form(zernike->base);
+  if (const auto* asphere = std::get_if<Asphere>(&shape); asphere && asphere->order == 0) return least_form(asphere->base);
+  if (const auto* xy = std::get_if<XyPolynomial>(&shape); xy && xy->polynomial.degree < 0) return least_form(xy->base);
+  if (const auto* biconic = std::get_if<Biconic>(&shape); biconic && biconic->is_conic()) return least_form(Conic{biconic->y.curvature, biconic->y.conic_constant});
+  if (const auto* toroid = std::get_if<Toroid>(&shape); toroid && toroid->is_sphere()) return least_form(Conic{toroid->section.curvature, 0});
   if (const auto* conic = std::get_if<Conic>(&shape)) {
     if (conic->curvature == 0) return Plane{};
     if (conic->conic_constant == 0) return Sphere{conic->curvature};

@@ -31,7 +31,7 @@ struct Sphere {
     const T c = curvature;
     const NearestToVertex<T> from = nearest_to_vertex(start, d);
     const Vec3<T>& p = from.point;
-    return crossing_of_conic(from, d, c, c, c, T(d.z - c * dot(d, p)), T(c * dot(p, p) - T(2) * p.z));
+    return crossing_of_quadric(from, d, c, c, c, c, T(d.z - c * dot(d, p)), T(c * dot(p, p) - T(2) * p.z));
   }
 };
 

@@ -15,19 +15,12 @@
 // order 40). Sums up to order 12 become one polynomial in X and Y when they are made, 2 operations a term, unless its terms cancel
 // so that their rounding would show beside r0 and the heights themselves (a millimetre of order 12 on a disc of 1 mm would be off by 8e-13).
 //
-// Intersection. From the conic's hit on, Newton's method on the implicit form, in which no root appears: with p the sum,
-//   g(t) = w - c/2 (x^2 + y^2 + (1+K) w^2) = 0,   w = z - p(x, y)                                                 (4)
-//   g' = G (d_z - p_x d_x - p_y d_y) - c (x d_x + y d_y),   G = 1 - (1+K) c w > 0 on the sheet of the vertex.
-// It ends when |g| is at its rounding, or with a step that moves (x, y) by less than rounding, so that p stays what it is, if
-// what g'' adds is below rounding too. What it finds is the hit if no other crossing can be on the way: the slope of the conic along the
-// line lies between those at both ends, for its sag is convex or concave, and
-//   |D^k p| <= sum |C_j N_j| T_n^(k)(1) T_n(s)/(s r0)^k   for rho <= s, s >= 1;   G, of the gradient, for k = 1           (5)
+// Intersection: conic_departure.h. The bound of the sum's slopes there:
+//   |D^k p| <= sum |C_j N_j| T_n^(k)(1) T_n(s)/(s r0)^k   for rho <= s, s >= 1                                       (4)
 // (|Z_j/N_j| <= 1 in the unit disc, T_n(s) outside, T_n Chebyshev's polynomial, and a polynomial's derivatives along lines in the disc are
-// below T_n^(k)(1) = prod_(i<k) (n^2 - i^2)/(2i + 1) of that), so
-//   d_z - L dz/dx - M dz/dy keeps its sign if at both ends that of the conic alone is beyond sqrt(L^2 + M^2) G.        (6)
-// Where it does not end at once, or (6) does not hold, first_crossing.h goes the way in steps that pass neither crossing nor fold, by (5) for k = 2, 3.
+// below T_n^(k)(1) = prod_(i<k) (n^2 - i^2)/(2i + 1) of that).
 //
-// Source: Harris, J. Math. Anal. Appl. 368, 374 (2010), for (5) (V. A. Markov's inequality in a disc).
+// Source: Harris, J. Math. Anal. Appl. 368, 374 (2010), for (4) (V. A. Markov's inequality in a disc).
 #pragma once
 
 #include <algorithm>
@@ -41,17 +34,14 @@
 #include "lib/numerics/key.h"
 #include "lib/numerics/zernike_basis.h"
 #include "lib/numerics/zernike_polynomial.h"
-#include "lib/surface/departure_block.h"
-#include "lib/surface/first_crossing.h"
+#include "lib/surface/conic_departure.h"
 
 namespace sagitta::surface {
 
-struct Zernike {
+struct Zernike : ConicDeparture<Zernike> {
   static constexpr std::string_view kind = "zernike";
   static constexpr std::array keys{
-      numerics::Key{.name = "radius_mm", .meaning = "vertex radius of the base conic",
-                    .range = numerics::nonzero_or_infinite, .fallback = std::numeric_limits<double>::infinity()},
-      numerics::Key{.name = "conic_constant", .meaning = "K of the base conic: 0 sphere, -1 paraboloid", .range = conic_constants},
+      base_radius_key, base_conic_constant_key,
       numerics::Key{.name = "normalization_radius_mm", .meaning = "radius at which rho = 1", .required = true,
                     .range = {.low = 1e-15, .high = 1e15, .reason = "it is in mm; powers of the radius over it would leave the range of numbers"}},
       numerics::Key{.name = "indexing", .kind = numerics::ValueKind::text, .meaning = "order and normalisation of the terms",
@@ -75,17 +65,16 @@ struct Zernike {
     int first_row, row_count;
   };
 
-  Conic base;
   double per_radius = 1;  // 1/r0
   const Group* groups = nullptr;
   int group_count = 0;
   const Row* rows = nullptr;
   bool is_polynomial = false;  // then the sum is this one, in X and Y
   numerics::Polynomial polynomial;
-  double coefficient_sum = 0;  // sum |C_j norm_j|, the size of the terms inside r0
+  double size_at_any_place = 0;  // sum |C_j norm_j|, the size of the terms inside r0
   const double* sizes = nullptr;  // the same by order, from 0 to `order`
   static constexpr double wider = 1.2;  // than r0: rays from there to here can still be told to pass no other crossing
-  double steepest_squared[2] = {0, 0};  // G^2 of (5) at s = 1 and `wider`
+  double steepest_squared[2] = {0, 0};  // of (4), k = 1, at s = 1 and `wider`
   int order = -1, given_order = -1;  // of the terms that are not zero, which alone are kept; of all that were given
 
   template <class Parameters, class Arena>
@@ -115,7 +104,7 @@ struct Zernike {
       const double scaled = micrometres * 1e-3 * numerics::zernike_norm(indexing, term);
       (term.m < 0 ? rows_of_m[k].sine : rows_of_m[k].cosine) += scaled;
       if (result.is_polynomial && scaled != 0) numerics::add_zernike_term<long double>(term, scaled, order, expanded);
-      result.coefficient_sum += std::abs(scaled);
+      result.size_at_any_place += std::abs(scaled);
       sizes[static_cast<std::size_t>(numerics::zernike_term(indexing, index).n)] += std::abs(scaled);
     }
     std::vector<Group> all_groups;
@@ -140,7 +129,7 @@ struct Zernike {
         const auto largest = [&](int power) { return power == 0 ? 1.0 : std::pow(static_cast<double>(power) / (i + j), 0.5 * power); };
         terms += std::abs(static_cast<double>(expanded[numerics::Polynomial::place(order, i, j)])) * largest(i) * largest(j);
       }
-    const double heights = std::abs(result.base.curvature) / (2 * result.per_radius * result.per_radius) + result.coefficient_sum;
+    const double heights = std::abs(result.base.curvature) / (2 * result.per_radius * result.per_radius) + result.size_at_any_place;
     result.is_polynomial = result.is_polynomial && terms <= most_cancellation * (1 / result.per_radius + heights);
     if (result.is_polynomial) result.polynomial = {order, arena.keep(std::vector<double>(expanded.begin(), expanded.end()))};
     return result;
@@ -157,10 +146,6 @@ struct Zernike {
                                             : static_cast<std::size_t>(group_count) * sizeof *groups + row_count * sizeof *rows;
     return sizeof *this + terms;
   }
-
-  // The sum and its gradient along x and y, in mm and 1.
-  template <class T>
-  using Sum = numerics::Polynomial::WithGradient<T>;
 
   template <class T>
   [[gnu::always_inline]] Sum<T> sum_of_polynomial(const T& x, const T& y) const {
@@ -212,38 +197,8 @@ struct Zernike {
     return {z, z_X * T(per_radius), z_Y * T(per_radius)};
   }
 
-  template <class T>
-  Height<T> height(const T& x, const T& y) const {
-    using std::abs;
-    const Sum<T> p = sum(x, y);
-    const T base_z = base.sag(x, y);
-    const Gradient<T> slope = base.gradient(x, y);
-    return {base_z + p.value, slope.x + p.along_x, slope.y + p.along_y, abs(base_z) + abs(p.value) + T(coefficient_sum)};
-  }
-
-  template <class T>
-  T sag(const T& x, const T& y) const {
-    return height(x, y).z;
-  }
-  template <class T>
-  Gradient<T> gradient(const T& x, const T& y) const {
-    const Height<T> h = height(x, y);
-    return {h.dz_dx, h.dz_dy};
-  }
-  template <class T>
-  Crossing<T> meet(const Vec3<T>& p, const Vec3<T>& d) const {
-    const Crossing<T> start = base.meet(p, d);
-    if (start.status != Status::ok) return start;
-    Approach<T> approach;
-    for (int look = 0; look < most_looks && approach.state == T(Approach<T>::going); ++look)
-      approach = look_at(start.point, d, approach, sum(start.point.x + approach.t * d.x, start.point.y + approach.t * d.y), look == 0);
-    if (approach.state != T(Approach<T>::arrived) || !passes_no_other(start.point, d, approach)) return first_crossing(*this, start, d);
-    const Vec3<T> normal{-approach.slope_x, -approach.slope_y, T(1)};
-    return {start.path + approach.t, start.point + approach.t * d, normal, dot(normal, d), Status::ok};
-  }
-
   void meet_block(const BlockOfLines& lines, BlockOfCrossings& crossings) const {
-    if (is_polynomial) return meet_departures(*this, lines, crossings);
+    if (is_polynomial) return ConicDeparture::meet_block(lines, crossings);
     for (int i = 0; i < lines.count; ++i)
       if (lines.travels[i]) crossings.put(i, meet(Vec3<double>{lines.x[i], lines.y[i], lines.z[i]}, Vec3<double>{lines.l[i], lines.m[i], lines.n[i]}));
   }
@@ -267,7 +222,7 @@ struct Zernike {
     return base.curvature + second * per_radius * per_radius;
   }
 
-  // (5)
+  // (4)
   template <class T>
   T bound_within(const T& radius, int derivatives) const {
     const T s = radius * T(per_radius) > T(1) ? T(radius * T(per_radius)) : T(1), per = T(per_radius) / s;
@@ -282,6 +237,15 @@ struct Zernike {
     for (int k = 0; k < derivatives; ++k) sum *= per;
     return sum;
   }
+  template <class T>
+  T size_of_terms(const T&, const T&) const {
+    return T(size_at_any_place);
+  }
+  template <class T>
+  T steepest_squared_within(const T& r_squared) const {
+    const T rho_squared = r_squared * T(per_radius * per_radius), unknown(std::numeric_limits<double>::infinity());
+    return select<T>(rho_squared <= T(1), T(steepest_squared[0]), select<T>(rho_squared <= T(wider * wider), T(steepest_squared[1]), unknown));
+  }
   // For first_crossing.h. Outside r0 the bound grows as T_n does: a step to 1 + n^(-3/2) of the radius keeps that below 10 for n up to 20.
   template <class T>
   T reach_from(const T& r) const {
@@ -289,58 +253,9 @@ struct Zernike {
     return r * further < r0 ? r0 : T(r * further);
   }
 
-  // The iteration on (4): where the next look is; where the last one was, g there, and the slopes of the surface.
-  static constexpr int most_looks = 5;
   // The size of a polynomial's terms beside r0 and the heights. Their rounding adds up to 2 N eps of them at worst, and in fact to eps/30
   // (order 8 and 12): one ulp of the system's size, where the worst would cost two digits.
   static constexpr double most_cancellation = 32;
-  template <class T>
-  struct Approach {
-    static constexpr double going = 0, arrived = 1, given_up = 2;
-    T t{}, old_t{}, g{}, slope_x{}, slope_y{}, state{};
-    T base_along{};  // d_z - L dz/dx - M dz/dy of the conic alone, there
-  };
-  // In select form, for T in lanes; what no longer goes on stays as it is.
-  template <class T>
-  Approach<T> look_at(const Vec3<T>& origin, const Vec3<T>& d, const Approach<T>& before, const Sum<T>& p, bool is_first) const {
-    using std::abs;
-    const T eps = std::numeric_limits<T>::epsilon();
-    const T c(base.curvature), one_plus_K = T(1) + T(base.conic_constant), t = before.t;
-    const T x = origin.x + t * d.x, y = origin.y + t * d.y, z = origin.z + t * d.z, w = z - p.value;
-    const T G = T(1) - one_plus_K * c * w;
-    const T g = w - T(0.5) * c * (x * x + y * y + one_plus_K * w * w);
-    const T w_t = d.z - p.along_x * d.x - p.along_y * d.y;
-    const T along = G * w_t - c * (x * d.x + y * d.y), forward = negate_where<T>(d.z < T(0), along);
-    const T step = -g / along, next = t + step;
-    const T scale = abs(origin.x) + abs(origin.y) + abs(origin.z) + abs(t);
-    const T bend = T(0.5) * abs(c) * (d.x * d.x + d.y * d.y + abs(one_plus_K) * w_t * w_t);  // the conic's part of -g''/2
-    const auto is_last = (abs(step) * (abs(d.x) + abs(d.y)) <= T(4) * eps * scale) & (bend * step * step <= eps * scale * abs(along));
-    const auto at_rounding = abs(g) <= eps * G * (abs(z) + abs(p.value) + T(coefficient_sum));
-    const auto ends = at_rounding | is_last;
-    const auto is_on_sheet = (G > T(0)) & (forward > T(0));  // false for NaN
-    const T per_G = T(1) / (G - one_plus_K * c * (w_t * step));  // behind the step: the last one may be long along z
-    const auto goes = before.state == T(Approach<T>::going);
-    auto sound = is_on_sheet, in_bracket = is_on_sheet;
-    if (!is_first) {
-      sound = sound & (abs(g) < abs(before.g));
-      in_bracket = (g * before.g > T(0)) | ((next - before.old_t) * (next - t) < T(0));
-    }
-    const T arrived(Approach<T>::arrived), given_up(Approach<T>::given_up), going(Approach<T>::going);
-    const T after = select<T>(sound & ends, arrived, select<T>(sound & in_bracket, going, given_up));
-    return {select<T>(goes & !at_rounding, next, t), t, g, select<T>(goes, c * x * per_G + p.along_x, before.slope_x),
-            select<T>(goes, c * y * per_G + p.along_y, before.slope_y), select<T>(goes, after, before.state),
-            select<T>(goes, d.z - c * (x * d.x + y * d.y) * per_G, before.base_along)};
-  }
-  // (6), with room for its own rounding.
-  template <class T>
-  auto passes_no_other(const Vec3<T>& origin, const Vec3<T>& d, const Approach<T>& end) const {
-    const T c(base.curvature), n_z = T(1) - (T(1) + T(base.conic_constant)) * c * origin.z;
-    const T along = n_z * d.z - c * (origin.x * d.x + origin.y * d.y), x = origin.x + end.t * d.x, y = origin.y + end.t * d.y;
-    const T r_squared = origin.x * origin.x + origin.y * origin.y, end_r_squared = x * x + y * y;
-    const T rho_squared = select<T>(r_squared > end_r_squared, r_squared, end_r_squared) * T(per_radius * per_radius);
-    const T slopes = T(1 + 1e-9) * (d.x * d.x + d.y * d.y) * select<T>(rho_squared <= T(1), T(steepest_squared[0]), T(steepest_squared[1]));
-    return (rho_squared <= T(wider * wider)) & (along * end.base_along > T(0)) & (along * along > n_z * n_z * slopes) & (end.base_along * end.base_along > slopes);
-  }
 };
 
 }  // namespace sagitta::surface

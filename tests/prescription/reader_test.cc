@@ -176,6 +176,28 @@ TEST(Reader, CountsZernikeTermsByTheirIndexing) {
   EXPECT_EQ(model.surfaces[0].shape.parameters.text("indexing"), "osa");
 }
 
+TEST(Reader, ReadsAspheresBiconicsToroidsAndPolynomials) {
+  using Terms = std::vector<std::pair<int, double>>;
+  const auto read = [](const std::string& text) { return model_of(system_with(pupil, "", text)).surfaces[0].shape; };
+  const auto asphere = read("asphere: {radius_mm: -8, coefficients: {4: 1e-4, 2: -0.001, 5: 3}}");
+  EXPECT_EQ(asphere.kind, "asphere");
+  EXPECT_EQ(asphere.parameters.number("radius_mm"), -8);
+  EXPECT_EQ(asphere.parameters.number("conic_constant"), 0);
+  EXPECT_EQ(asphere.parameters.list("coefficients"), (Terms{{2, -.001}, {4, 1e-4}, {5, 3}}));
+  const auto biconic = read("biconic: {radius_x_mm: .inf, radius_y_mm: 7.7, conic_constant_y: -0.2}");
+  EXPECT_EQ(biconic.parameters.number("radius_x_mm"), infinity);
+  EXPECT_EQ(biconic.parameters.number("radius_y_mm"), 7.7);
+  EXPECT_EQ(biconic.parameters.number("conic_constant_x"), 0);
+  EXPECT_EQ(biconic.parameters.number("conic_constant_y"), -.2);
+  const auto toroid = read("toroid: {radius_rotation_mm: -50, radius_mm: 40, conic_constant: -0.5, coefficients: {2: 5e-5}}");
+  EXPECT_EQ(toroid.parameters.number("radius_rotation_mm"), -50);
+  EXPECT_EQ(toroid.parameters.list("coefficients"), (Terms{{2, 5e-5}}));
+  const auto polynomial = read("xy_polynomial: {coefficients: [0.1, 0.2, 0.3]}");
+  EXPECT_EQ(polynomial.parameters.number("radius_mm"), infinity);
+  EXPECT_EQ(polynomial.parameters.number("normalization_radius_mm"), 1);
+  EXPECT_EQ(polynomial.parameters.list("coefficients"), (Terms{{1, .1}, {2, .2}, {3, .3}}));
+}
+
 TEST(Reader, FindsThePointsBesideThePrescriptionThenInTheDataFolder) {
   const std::string shape = "delaunay: {points: cornea.xyz}";
   const std::string near = "0 0 0\n1 0 0\n0 1 0\n", far = "0 0 5\n1 0 5\n0 1 5\n1 1 5\n";

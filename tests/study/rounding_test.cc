@@ -118,6 +118,27 @@ TEST(Rounding, StaysWithinBoundsThatAreNarrow) {
   }
 }
 
+// So are those at aspheres, biconics, toroids and polynomials, whose terms add up to little here.
+TEST(Rounding, StaysWithinBoundsAtEveryShapeOfAFormula) {
+  const auto compiled = checked(compile_text(prescription_of(
+      "  - {stop: true, biconic: {radius_x_mm: 7.83, radius_y_mm: 7.7, conic_constant_x: -0.18, conic_constant_y: -0.3}, thickness_mm: 0.55, medium: {index: 1.3777}}\n"
+      "  - {asphere: {radius_mm: 6.5, conic_constant: -0.2, coefficients: {2: -0.001, 4: 1e-4, 5: 2e-6, 6: -1e-6}}, thickness_mm: 3, medium: {index: 1.337}}\n"
+      "  - {xy_polynomial: {radius_mm: 10, coefficients: {3: 1e-4, 4: 2e-4, 10: 1e-6}}, thickness_mm: 4, medium: {index: 1.42}}\n"
+      "  - {toroid: {radius_rotation_mm: -6, radius_mm: -6.1, conic_constant: -1, coefficients: {4: 1e-5}}, thickness_mm: 16.3, medium: {index: 1.336}}\n"
+      "  - {biconic: {radius_x_mm: -12.91, radius_y_mm: -12.72, conic_constant_x: 0.27, conic_constant_y: 0.25}}\n",
+      "entrance_pupil_diameter_mm: 5", "fields: {angles_deg: [[0, 0], [8, 20]]}\n")));
+  const Rounding rounding = rounding_of(compiled.scene, {.rays = 200});
+  EXPECT_GT(rounding.rays, 100);
+  for (std::size_t k = 1; k < rounding.surfaces.size(); ++k) {
+    const auto& surface = rounding.surfaces[k];
+    EXPECT_EQ(surface.without_bound, 0);
+    EXPECT_GT(surface.of_bound, 0);
+    EXPECT_LE(surface.of_bound, 1);
+    EXPECT_LT(surface.bound_position_mm.worst(), 300 * 0x1p-52 * rounding.scale_mm) << k;
+    EXPECT_LT(surface.bound_direction_rad.worst(), 600 * 0x1p-52) << k;
+  }
+}
+
 // Six rays parallel to the axis at a height of R (1 - 1e-8), where 1/cos I is 7071, and at R/10: the bound, and what may be lost, are as much larger.
 TEST(Rounding, HasBoundsThatGrowWithTheCosine) {
   const auto bound_at = [](double height) {

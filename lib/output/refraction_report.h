@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `sagitta refraction` says: the refraction of an eye by every field and wavelength, as a table and as JSON.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lib/analysis/refraction.h"
+#include "lib/output/report.h"
+
+namespace sagitta::output {
+
+struct RefractionReport {
+  Report system;  // without results
+  double vertex_distance_mm = 0;
+  std::vector<analysis::RefractionResult> results;  // by field, then wavelength
+};
+
+std::string refraction_text(const RefractionReport& report);
+std::string refraction_json(const RefractionReport& report);
+
+}  // namespace sagitta::output
