@@ -62,6 +62,10 @@ TEST(Schema, HasAtEveryLevelTheKeysOfTheReader) {
     EXPECT_EQ(keys_of_schema(top.at(level)), keys_of_reader(std::string(level) + ": {" + unknown + "}")) << level;
   EXPECT_EQ(keys_of_schema(surface), keys_of_reader(with_surface(unknown)));
   EXPECT_EQ(keys_of_schema(medium.at("anyOf").at(1)), keys_of_reader(with_surface("medium: {" + unknown + "}")));
+  const json& grin = medium.at("anyOf").at(1).at("properties").at("grin");
+  EXPECT_EQ(keys_of_schema(grin), keys_of_reader(with_surface("medium: {grin: {" + unknown + "}}")));
+  for (const ShapeKind& kind : gradient_kinds())
+    EXPECT_EQ(keys_of_schema(grin.at("properties").at(std::string(kind.name))), keys_of_reader(with_surface("medium: {grin: {" + std::string(kind.name) + ": {" + unknown + "}}}"))) << kind.name;
   for (const ShapeKind& kind : shape_kinds())
     EXPECT_EQ(keys_of_schema(surface.at("properties").at(std::string(kind.name))), keys_of_reader(with_surface(std::string(kind.name) + ": {" + unknown + "}"))) << kind.name;
 }
