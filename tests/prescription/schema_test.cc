@@ -163,6 +163,7 @@ TEST(Schema, TakesTheValuesThatTheReaderTakes) {
       for (const char* value : {"text", "-1", "0", "0.5", "1.5", "2", ".inf", "-.inf", "1e120", "[1]", "[1, 2, 3]", "[[1, 2]]", "[1, [2]]", "{a: 1}", "{3: 1}", "true", "'= 2'", "''"}) {
         if (key.kind == ValueKind::medium && std::string_view(value) != "0.5" && value[0] != '[') continue;
         if (key.range.infinite && std::string_view(value) == "1e120") continue;  // which a schema cannot tell from .inf
+        if (std::string_view(value) == "'= 2'" && !key.range.contains(2)) continue;  // nor work out
         const std::string name = fmt::format("{}.yaml", ++count), text = around(level, fmt::format("{}: {}", key.name, value));
         const bool is_taken = !read_prescription(files.write(name, text)).findings.has_errors();
         written[name] = text;
