@@ -57,6 +57,13 @@ double size_of(const Vec3<T>& v) {
   return std::sqrt(static_cast<double>(T(dot(v, v))));
 }
 
+// By how much the next step may be longer, or this one must be shorter. The error goes with a power of the step beyond the eighth; roots alone have the same bits in
+// every library of mathematics.
+inline double step_factor(double error) {
+  const double eighth = std::sqrt(std::sqrt(std::sqrt(error)));
+  return error <= 1 ? std::min(0.9 / std::sqrt(eighth), 4.0) : error > 1 ? std::clamp(0.9 / eighth, 0.1, 0.5) : 0.1;  // NaN last
+}
+
 template <class T, int K>
 struct ExtrapolationWeights {
   std::array<T, K> of_sum, of_error;  // (3), (4)

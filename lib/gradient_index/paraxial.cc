@@ -41,8 +41,7 @@ ParaxialTransfer transfer(const FormType& form, double z, double thickness, doub
       return {ray.position.x, ray.position.y, ray.optical_direction.x, ray.optical_direction.y, index_start, std::sqrt(at.squared_index)};
     const double whole = left / ray.optical_direction.z, h = std::copysign(std::min(std::abs(whole), longest), whole);
     const Leap<double> next = leap(medium, ray, at, h, finest);
-    const double of_length = 0.9 * std::pow(next.error, -1.0 / (2 * small_steps<double> - 1));
-    longest = std::abs(h) * (of_length > 0.1 ? std::min(of_length, 4.0) : 0.1);
+    longest = std::abs(h) * step_factor(next.error);
     if (!(next.error <= 1)) continue;
     ray = next.behind, at = medium.at(ray.position);
   }

@@ -66,9 +66,8 @@ class Traveller {
       if (!(std::abs(h) * std::sqrt(index_squared()) > 4 * rounding * size_of(from_.position))) break;
       ++steps_;
       const Leap<T> next = leap(medium_, from_, at_, T(h), tolerance_);
-      const double of_length = 0.9 * std::pow(next.error, -1.0 / (2 * small_steps<T> - 1));
       if (!(next.error <= 1)) {
-        length_ = std::abs(h) * (of_length > 0.1 ? std::min(of_length, 0.5) : 0.1);
+        length_ = std::abs(h) * step_factor(next.error);
         continue;
       }
       const InMedium<T> at_next = medium_.at(next.behind.position);
@@ -79,7 +78,7 @@ class Traveller {
       }
       from_ = next.behind, at_ = at_next;
       if (!is_squared_index(index_squared()) || has_left()) return lost(why_);
-      length_ = std::abs(h) * std::min(of_length, 4.0);
+      length_ = std::abs(h) * step_factor(next.error);
       const Crossing<T> ahead = surface_.meet(from_.position, unit(from_.optical_direction));
       if (ahead.status == Status::ok) length_ = std::min(length_, std::max(beyond * size_of(ahead.path) / std::sqrt(index_squared()), 2 * std::abs(h)));
     }
