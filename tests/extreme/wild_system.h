@@ -99,7 +99,7 @@ class WildGenerator {
     const int count = 1 + static_cast<int>(u() * 6);
     for (int i = 0; i < count; ++i) of[first + static_cast<int>(u() * (most - first + 1))] = result.size * u(-1, 1);
     for (const auto& [index, mm] : of)
-      result.list += fmt::format("{}{}: {}", result.list.empty() ? "" : ", ", index, over_norm_radius ? std::clamp(mm / std::pow(result.norm_radius, index), -1e100, 1e100) : mm);
+      result.list += fmt::format("{}{}: {}", result.list.empty() ? "" : ", ", index, over_norm_radius ? std::copysign(std::clamp(std::abs(mm) / std::pow(result.norm_radius, index), 1e-100, 1e100), mm) : mm);
     return result;
   }
   std::string straight_or(double radius) { return is(.1) ? ".inf" : fmt::format("{}", radius); }
