@@ -73,7 +73,7 @@ TEST(Folds, HitIsTheOneContinuousWithTheBaseConics) {
     const prescription::Shape shape = wild.shape();
     numerics::Arena arena;
     const auto zernike = surface::Zernike::from(shape.parameters, arena);
-    const TextbookZernike<Extended> exact{{Extended(zernike.base.curvature), Extended(1) + Extended(zernike.base.conic_constant)}, shape.parameters};
+    const TextbookDeparture<Extended> exact{{shape}};
     Looks counted{zernike};
     for (int i = 0; i < 100; ++i) {
       const GlobalRay ray = wild.ray();

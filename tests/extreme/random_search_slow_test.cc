@@ -33,7 +33,7 @@ TEST_P(WildSystems, KeepTheLaws) {
   for (const char* law : {"within its bound", "on the surface and the ray", "Snell and coplanarity", "Fermat", "sent back"}) EXPECT_GE(count(law), 15 * systems) << law;
   EXPECT_GE(count("turned about the axis"), 8 * systems);
   EXPECT_GE(count("mirrored in x"), 6 * systems);
-  EXPECT_GE(count("turned by 90 degrees"), systems);
+  EXPECT_GE(count("turned by 90 degrees"), systems / 2);  // those of closed forms alone
   EXPECT_GE(count("verify"), systems / 2);
   for (const auto& [name, how_many] : found.counts) fmt::print("random search | seeds from {} | {} | {} |\n", first, name, how_many);
   for (const auto& [name, worst] : found.worst) fmt::print("random search | seeds from {} | worst: {} | {:.3g} | {} |\n", first, name, worst.value, worst.where);

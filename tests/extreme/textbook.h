@@ -4,20 +4,20 @@
 //
 // In double it goes as the usual program does:
 //   conic     transfer to the vertex plane, t = (-b +- sqrt(b^2 - 4 a c))/(2 a) (a = 0: -c/b), the root nearer to that plane      (1)
-//   zernike   powers of rho with factorials; Newton's method from the vertex plane, 32 steps at most, and then what there is     (2)
+//   others    textbook_sag.h; Newton's method from the vertex plane, 32 steps at most, and then what there is                     (2)
 //   facets    Moeller and Trumbore's test, facet by facet, 0 <= u, v, u + v <= 1                                                   (3)
 //   Snell     cos^2 i' = 1 - mu^2 (1 - cos^2 i), unit normals, directions and light paths added up as they come                     (4)
 // (1) is that of optiland (geometries/standard.py), without the transfer; (2) returns like goptical's.
-// In other number types two choices differ: of the roots of (1) the contract's is taken, and (2) follows the base conic's hit while the
-// departure grows from 0 to its size, which is what "the hit continuous with the base conic's" means.
+// In other number types two choices differ: of the roots of (1) the contract's is taken, and (2) follows the base's hit while the
+// departure grows from 0 to its size, which is what "the hit continuous with the base's" means.
 #pragma once
 
 #include <cmath>
 #include <variant>
 
-#include "lib/numerics/zernike_basis.h"
 #include "lib/prescription/model.h"
 #include "lib/scene/scene.h"
+#include "tests/extreme/textbook_sag.h"
 
 namespace sagitta::test {
 
@@ -56,110 +56,55 @@ TextbookHit<T> textbook_plane(const Vec3<T>& p, const Vec3<T>& d) {
 }
 
 template <class T>
-struct TextbookConic {
-  T c, k1;  // curvature, 1 + K
-
-  T sag(const T& r2) const {
-    using std::sqrt;
-    return c * r2 / (T(1) + sqrt(T(1) - k1 * c * c * r2));
+TextbookHit<T> textbook_meet(const TextbookQuadric<T>& quadric, const Vec3<T>& p, const Vec3<T>& d) {
+  using std::sqrt;
+  const auto& [c_x, c_y, m] = quadric;
+  const T A = c_x * d.x * d.x + c_y * d.y * d.y + m * d.z * d.z;
+  const T B = T(2) * (c_x * d.x * p.x + c_y * d.y * p.y + m * d.z * p.z - d.z);
+  const T C = c_x * p.x * p.x + c_y * p.y * p.y + m * p.z * p.z - T(2) * p.z;
+  const T radicand = B * B - T(4) * A * C;
+  if (radicand < T(0)) return {Status::missed};
+  const T root = sqrt(radicand), q = B < T(0) ? T((root - B) / T(2)) : T((-B - root) / T(2));
+  for (const T& t : {T(q / A), T(C / q)}) {
+    const Vec3<T> hit = p + t * d, normal{-c_x * hit.x, -c_y * hit.y, T(1) - m * hit.z};
+    const T along = d.z < T(0) ? T(-dot(d, normal)) : dot(d, normal);
+    if (normal.z > T(0) && along >= T(0)) return hit_of(t, hit, normal);  // the contract's: false for NaN and infinity
   }
-  // dz/dx = x times this.
-  T slope_per_mm(const T& r2) const {
-    using std::sqrt;
-    return c / sqrt(T(1) - k1 * c * c * r2);
-  }
-  TextbookHit<T> meet(const Vec3<T>& start, const Vec3<T>& d) const {
-    using std::abs, std::sqrt;
-    if (c == T(0)) return textbook_plane(start, d);
-    const T R = T(1) / c, to_plane = is_naive<T> ? T(-start.z / d.z) : T(0);
-    const Vec3<T> p = start + to_plane * d;
-    const T a = d.x * d.x + d.y * d.y + k1 * d.z * d.z;  // (1)
-    const T b = T(2) * (d.x * p.x + d.y * p.y + k1 * d.z * p.z - R * d.z);
-    const T e = p.x * p.x + p.y * p.y + k1 * p.z * p.z - T(2) * R * p.z;
-    const T radicand = b * b - T(4) * a * e;
-    if (radicand < T(0)) return {Status::missed};
-    const T root = sqrt(radicand);
-    if constexpr (is_naive<T>) {
-      const T t1 = (-b + root) / (T(2) * a), t2 = (-b - root) / (T(2) * a);
-      const T t = a == T(0) ? -e / b : abs(p.z + t1 * d.z) <= abs(p.z + t2 * d.z) ? t1 : t2;
-      const Vec3<T> hit = p + t * d;
-      const T slope = slope_per_mm(hit.x * hit.x + hit.y * hit.y);
-      return hit_of<T>(to_plane + t, hit, {-slope * hit.x, -slope * hit.y, T(1)});
-    } else {
-      const T q = b < T(0) ? T((root - b) / T(2)) : T((-b - root) / T(2));
-      for (const T& t : {T(q / a), T(e / q)}) {
-        const Vec3<T> hit = p + t * d;
-        const Vec3<T> normal{-c * hit.x, -c * hit.y, T(1) - k1 * c * hit.z};
-        const T along = d.z < T(0) ? T(-dot(d, normal)) : dot(d, normal);
-        if (normal.z > T(0) && along >= T(0)) return hit_of(t, hit, normal);  // the contract's: false for NaN and infinity
-      }
-      return {Status::missed};
-    }
-  }
-};
-
-template <class T>
-struct HeightAndSlopes {
-  T z, dz_dx, dz_dy;
-};
-
-// One Zernike polynomial, as sum over j of (-1)^j (n-j)!/(j! ((n+m)/2-j)! ((n-m)/2-j)!) rho^(n-2j) by rho^m e^(i m theta) = (X + i Y)^m.
-template <class T>
-HeightAndSlopes<T> textbook_zernike(numerics::ZernikeTerm term, const T& X, const T& Y) {
-  const auto factorial = [](int of) {
-    T product(1);
-    for (int i = 2; i <= of; ++i) product *= T(i);
-    return product;
-  };
-  const auto power = [](const T& of, int exponent) {
-    T product(1);
-    for (int i = 0; i < exponent; ++i) product *= of;
-    return product;
-  };
-  const int n = term.n, m = std::abs(term.m);
-  const T u = X * X + Y * Y;
-  T radial(0), radial_u(0);
-  for (int j = 0; 2 * j <= n - m; ++j) {
-    const int exponent = (n - m) / 2 - j;
-    const T coefficient = T(j % 2 == 0 ? 1 : -1) * factorial(n - j) / (factorial(j) * factorial((n + m) / 2 - j) * factorial(exponent));
-    radial += coefficient * power(u, exponent);
-    if (exponent > 0) radial_u += coefficient * T(exponent) * power(u, exponent - 1);
-  }
-  T re(1), im(0), re_before(0), im_before(0);
-  for (int i = 0; i < m; ++i) {
-    re_before = re, im_before = im;
-    re = X * re_before - Y * im_before;
-    im = X * im_before + Y * re_before;
-  }
-  const T h = term.m < 0 ? im : re, h_X = T(m) * (term.m < 0 ? im_before : re_before), h_Y = T(m) * (term.m < 0 ? re_before : T(-im_before));
-  return {h * radial, h_X * radial + T(2) * X * h * radial_u, h_Y * radial + T(2) * Y * h * radial_u};
+  return {Status::missed};
 }
 
-// From what the user wrote, not from what is compiled.
 template <class T>
-struct TextbookZernike {
-  TextbookConic<T> base;
-  const prescription::Parameters& given;
-
-  HeightAndSlopes<T> departure(const T& x, const T& y) const {
-    using std::sqrt;
-    const auto indexing = numerics::zernike_indexing(given.text("indexing"));
-    const T r0(given.number("normalization_radius_mm"));
-    HeightAndSlopes<T> sum{T(0), T(0), T(0)};
-    for (const auto& [index, micrometres] : given.list("coefficients_um")) {
-      if (micrometres == 0) continue;
-      const numerics::ZernikeTerm term = numerics::zernike_term(indexing, index);
-      const T norm = indexing == numerics::ZernikeIndexing::fringe ? T(1) : T(sqrt(T(term.n + 1) * T(term.m == 0 ? 1 : 2)));
-      const T size = T(micrometres) / T(1000) * norm;
-      const HeightAndSlopes<T> one = textbook_zernike<T>(term, x / r0, y / r0);
-      sum.z += size * one.z, sum.dz_dx += size * one.dz_dx / r0, sum.dz_dy += size * one.dz_dy / r0;
-    }
-    return sum;
+TextbookHit<T> textbook_meet(const TextbookConic<T>& conic, const Vec3<T>& start, const Vec3<T>& d) {
+  const T &c = conic.c, &k1 = conic.k1;
+  if (c == T(0)) return textbook_plane(start, d);
+  if constexpr (is_naive<T>) {
+    const T R = 1 / c, to_plane = -start.z / d.z;
+    const Vec3<T> p = start + to_plane * d;
+    const T a = d.x * d.x + d.y * d.y + k1 * d.z * d.z;  // (1)
+    const T b = 2 * (d.x * p.x + d.y * p.y + k1 * d.z * p.z - R * d.z);
+    const T e = p.x * p.x + p.y * p.y + k1 * p.z * p.z - 2 * R * p.z;
+    const T radicand = b * b - 4 * a * e;
+    if (radicand < 0) return {Status::missed};
+    const T root = std::sqrt(radicand), t1 = (-b + root) / (2 * a), t2 = (-b - root) / (2 * a);
+    const T t = a == 0 ? -e / b : std::abs(p.z + t1 * d.z) <= std::abs(p.z + t2 * d.z) ? t1 : t2;
+    const Vec3<T> hit = p + t * d;
+    const T slope = c / std::sqrt(1 - k1 * c * c * (hit.x * hit.x + hit.y * hit.y));
+    return hit_of<T>(to_plane + t, hit, {-slope * hit.x, -slope * hit.y, 1});
+  } else {
+    return textbook_meet(TextbookQuadric<T>{c, c, k1 * c}, start, d);
   }
+}
+
+// (2), by what the user wrote.
+template <class T>
+struct TextbookDeparture {
+  TextbookSag<T> surface;
+
   HeightAndSlopes<T> height(const T& x, const T& y, const T& share) const {
-    const T r2 = x * x + y * y, slope = base.slope_per_mm(r2);
-    const HeightAndSlopes<T> more = departure(x, y);
-    return {base.sag(r2) + share * more.z, slope * x + share * more.dz_dx, slope * y + share * more.dz_dy};
+    const HeightAndSlopes<T> whole = surface.height(x, y);
+    if (share == T(1)) return whole;
+    const HeightAndSlopes<T> base = surface.base().height(x, y);
+    return base + share * (whole - base);
   }
   // (2), for a share of the departure; false where it does not settle.
   bool newton(const Vec3<T>& p, const Vec3<T>& d, const T& share, const T& tolerance, T& t, Vec3<T>& normal) const {
@@ -181,7 +126,7 @@ struct TextbookZernike {
       newton(p, d, 1, 1e-14, t, normal);
       return hit_of<T>(t, p + t * d, normal);
     } else {
-      const TextbookHit<T> start = base.meet(p, d);
+      const TextbookHit<T> start = textbook_meet(surface.base(), p, d);
       if (start.status != Status::ok) return start;
       using std::pow;
       const bool is_forward = dot(d, start.normal) > T(0);
@@ -204,12 +149,12 @@ struct TextbookZernike {
         if (step < shortest) return {Status::not_converged};  // the hit ends at a fold
       }
       newton(p, d, T(1), settled, t, normal);
-      // a fold that the steps have jumped over: lambda = (z - conic)/departure must rise from the base's hit to this one
+      // a fold that the steps have jumped over: lambda = (z - base)/departure must rise from the base's hit to this one
       constexpr int samples = 256;
       T before(0);
       for (int i = 1; i < samples && abs(t - start.path) > near; ++i) {
         const Vec3<T> at = p + (start.path + (t - start.path) * T(i) / T(samples)) * d;
-        const T lambda = (at.z - base.sag(at.x * at.x + at.y * at.y)) / departure(at.x, at.y).z;
+        const T base = surface.base().height(at.x, at.y).z, lambda = (at.z - base) / (surface.height(at.x, at.y).z - base);
         if (!(lambda > before)) return {Status::not_converged};
         before = lambda;
       }
@@ -235,20 +180,19 @@ TextbookHit<T> textbook_facets(const surface::Mesh& mesh, const Vec3<T>& p, cons
   return {Status::outside_data};
 }
 
-// Shapes that the textbook knows.
+// Shapes that the textbook knows: those of a formula, and flat facets.
 inline bool is_in_textbook(const surface::Shape& shape) {
-  return std::visit([]<class S>(const S&) { return std::is_same_v<S, surface::Facets> || surface::has_closed_form<S> || std::is_same_v<S, surface::Zernike>; }, shape);
+  return std::visit([]<class S>(const S&) { return std::is_same_v<S, surface::Facets> || surface::is_analytic<S>; }, shape);
 }
 
 template <class T>
 TextbookHit<T> textbook_meet(const surface::Shape& shape, const prescription::Shape& given, const Vec3<T>& p, const Vec3<T>& d) {
   return std::visit([&]<class S>(const S& of) -> TextbookHit<T> {
     if constexpr (std::is_same_v<S, surface::Plane>) return textbook_plane(p, d);
-    else if constexpr (std::is_same_v<S, surface::Sphere>) return TextbookConic<T>{T(of.curvature), T(1)}.meet(p, d);
-    else if constexpr (std::is_same_v<S, surface::Conic>) return TextbookConic<T>{T(of.curvature), T(1) + T(of.conic_constant)}.meet(p, d);
-    else if constexpr (std::is_same_v<S, surface::Zernike>)
-      return TextbookZernike<T>{{T(of.base.curvature), T(1) + T(of.base.conic_constant)}, given.parameters}.meet(p, d);
+    else if constexpr (std::is_same_v<S, surface::Sphere>) return textbook_meet(TextbookConic<T>{T(of.curvature), T(1)}, p, d);
+    else if constexpr (std::is_same_v<S, surface::Conic>) return textbook_meet(TextbookConic<T>{T(of.curvature), T(1) + T(of.conic_constant)}, p, d);
     else if constexpr (std::is_same_v<S, surface::Facets>) return textbook_facets(*of.mesh, p, d);
+    else if constexpr (surface::is_analytic<S>) return TextbookDeparture<T>{{given}}.meet(p, d);
     else return {Status::not_converged};
   }, shape);
 }

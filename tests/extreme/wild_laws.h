@@ -39,13 +39,12 @@ class Equation {
   Equation(const surface::Shape& compiled, const prescription::Shape& given) : compiled_(compiled) {
     if (const auto* sphere = std::get_if<surface::Sphere>(&compiled_)) conic_ = TextbookConic<Exact>{Exact(sphere->curvature), Exact(1)};
     if (const auto* conic = std::get_if<surface::Conic>(&compiled_)) conic_ = TextbookConic<Exact>{Exact(conic->curvature), Exact(1) + Exact(conic->conic_constant)};
-    if (const auto* zernike = std::get_if<surface::Zernike>(&compiled_))
-      zernike_.emplace(TextbookConic<Exact>{Exact(zernike->base.curvature), Exact(1) + Exact(zernike->base.conic_constant)}, given.parameters);
+    if (std::visit([]<class S>(const S&) { return surface::is_analytic<S> && !surface::has_closed_form<S>; }, compiled)) sag_.emplace(given);
   }
   const std::optional<TextbookConic<Exact>>& conic() const { return conic_; }
   Exact sag(const Exact& x, const Exact& y) const {
-    if (conic_) return conic_->sag(x * x + y * y);
-    if (zernike_) return zernike_->height(x, y, Exact(1)).z;
+    if (conic_) return conic_->height(x, y).z;
+    if (sag_) return sag_->height(x, y).z;
     return std::visit([&](const auto& shape) { return shape.sag(x, y); }, compiled_);
   }
   // Up to the length of the gradient how far off the surface a place is. A conic's is z - c/2 (x^2 + y^2 + (1+K) z^2), without a root.
@@ -55,8 +54,8 @@ class Equation {
   }
   Vec3<Exact> gradient(const Vec3<Exact>& p) const {
     if (conic_) return {-conic_->c * p.x, -conic_->c * p.y, Exact(1) - conic_->c * conic_->k1 * p.z};
-    if (zernike_) {
-      const auto h = zernike_->height(p.x, p.y, Exact(1));
+    if (sag_) {
+      const auto h = sag_->height(p.x, p.y);
       return {-h.dz_dx, -h.dz_dy, Exact(1)};
     }
     const auto slope = std::visit([&](const auto& shape) { return shape.gradient(p.x, p.y); }, compiled_);
@@ -64,12 +63,9 @@ class Equation {
   }
 
  private:
-  struct Zernike : TextbookZernike<Exact> {
-    Zernike(TextbookConic<Exact> base_conic, const prescription::Parameters& parameters) : TextbookZernike<Exact>{base_conic, parameters} {}
-  };
   const surface::Shape& compiled_;
   std::optional<TextbookConic<Exact>> conic_;
-  std::optional<Zernike> zernike_;
+  std::optional<TextbookSag<Exact>> sag_;
 };
 
 // How far beyond what is allowed: above 1 it is. Infinite for NaN.
@@ -94,7 +90,7 @@ inline double off_surface(const Passage& at) {
   const Vec3<Exact>&p = at.behind.position, n = equation.gradient(p);
   const double size = size_of(n);
   if (const auto& conic = equation.conic())
-    if (const double other = part(p - conic->meet(at.exact.start, at.exact.direction).point, at.bound.position); other > 1) return other;
+    if (const double other = part(p - textbook_meet(*conic, at.exact.start, at.exact.direction).point, at.bound.position); other > 1) return other;
   return std::max(part(equation.residual(p), 2 * size * at.bound.position), part(cross(p - at.exact.start, at.exact.direction), at.bound.position));
 }
 
@@ -188,7 +184,7 @@ inline std::optional<double> reversed(const Passage& at) {
 // 4 u of the place at its start, and of the direction. None: another kind of surface, or an aperture's rim is between the two.
 inline std::optional<double> turned(const Passage& at, const trace::RayBatch& start, std::size_t i, double angle) {
   const scene::Surface& surface = at.surface();
-  const bool is_of_revolution = std::visit([]<class S>(const S&) { return surface::has_closed_form<S>; }, surface.shape);
+  const bool is_of_revolution = std::visit([]<class S>(const S&) { return surface::has_closed_form<S> || std::is_same_v<S, surface::Asphere>; }, surface.shape);
   if (!is_of_revolution || !surface.centred || at.from != at.number - 1) return std::nullopt;
   const Alone alone(surface, at.index_before(), at.index_behind());
   const double c = std::cos(angle), s = std::sin(angle);

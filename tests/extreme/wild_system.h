@@ -87,6 +87,45 @@ class WildGenerator {
     const std::string base = is(.2) ? "" : fmt::format("radius_mm: {}, conic_constant: {}, ", R, K);
     return fmt::format("zernike: {{{}normalization_radius_mm: {}, indexing: osa, coefficients_um: {{{}}}}}", base, norm_radius, list);
   }
+  // Of sums of powers: each term is at norm_radius as large as a Zernike term may be (and of numbers that the reader takes).
+  struct Terms {
+    double norm_radius, size;
+    std::string list;
+  };
+  Terms terms(int first, int most, bool over_norm_radius) {
+    Terms result{system_.beam_radius * (is(.1) ? log_uniform(-1, 3) : u(1, 6)), 0, {}};
+    result.size = result.norm_radius * (is(.15) ? log_uniform(-2, 0) : log_uniform(-7, -2));
+    std::map<int, double> of;
+    const int count = 1 + static_cast<int>(u() * 6);
+    for (int i = 0; i < count; ++i) of[first + static_cast<int>(u() * (most - first + 1))] = result.size * u(-1, 1);
+    for (const auto& [index, mm] : of)
+      result.list += fmt::format("{}{}: {}", result.list.empty() ? "" : ", ", index, over_norm_radius ? std::copysign(std::clamp(std::abs(mm) / std::pow(result.norm_radius, index), 1e-100, 1e100), mm) : mm);
+    return result;
+  }
+  std::string straight_or(double radius) { return is(.1) ? ".inf" : fmt::format("{}", radius); }
+  std::string asphere() {
+    const double R = radius(), K = conic_constant();
+    const std::string base = straight_or(R), powers = terms(2, is(.1) ? 40 : is(.4) ? 20 : 10, true).list;
+    return fmt::format("asphere: {{radius_mm: {}, conic_constant: {}, coefficients: {{{}}}}}", base, K, powers);
+  }
+  // The sections' radii apart, more or less: a cornea, a saddle, a cylinder.
+  double other_radius(double of) { return is(.3) ? radius() : of * (1 + sign() * log_uniform(-15, -.3)); }
+  std::string biconic() {
+    const double R = radius(), other = other_radius(R), K_x = conic_constant(), K_y = is(.3) ? K_x : conic_constant();
+    const std::string x = straight_or(R), y = straight_or(other);
+    return fmt::format("biconic: {{radius_x_mm: {}, radius_y_mm: {}, conic_constant_x: {}, conic_constant_y: {}}}", x, y, K_x, K_y);
+  }
+  std::string toroid() {
+    const double R = radius(), other = other_radius(R), K = conic_constant();
+    const std::string rotation = straight_or(R), curve = straight_or(other), powers = is(.5) ? "" : ", coefficients: {" + terms(2, is(.2) ? 20 : 8, true).list + "}";
+    return fmt::format("toroid: {{radius_rotation_mm: {}, radius_mm: {}, conic_constant: {}{}}}", rotation, curve, K, powers);
+  }
+  std::string xy_polynomial() {
+    const double R = radius(), K = conic_constant();
+    const std::string base = is(.2) ? "" : fmt::format("radius_mm: {}, conic_constant: {}, ", R, K);
+    const Terms of = terms(1, is(.1) ? 230 : is(.3) ? 65 : 20, false);
+    return fmt::format("xy_polynomial: {{{}normalization_radius_mm: {}, coefficients: {{{}}}}}", base, of.norm_radius, of.list);
+  }
   // A sphere with ripples, at places that are on a grid or strewn.
   std::string points(int number) {
     const double R = radius(), half = system_.beam_radius * u(1.5, 4), strewn = is(.3) ? 0 : .4, ripple = half * log_uniform(-6, -2);
@@ -105,9 +144,13 @@ class WildGenerator {
   std::string shape(int number) {
     if (has_points_ && is(.4)) return points(number);
     const double kind = u();
-    if (kind < .15) return "plane: {}";
-    if (kind < .4) return fmt::format("conic: {{radius_mm: {}}}", radius());
-    if (kind >= .8) return zernike();
+    if (kind < .1) return "plane: {}";
+    if (kind < .3) return fmt::format("conic: {{radius_mm: {}}}", radius());
+    if (kind >= .95) return xy_polynomial();
+    if (kind >= .9) return toroid();
+    if (kind >= .85) return biconic();
+    if (kind >= .75) return asphere();
+    if (kind >= .6) return zernike();
     const double R = radius(), K = conic_constant();
     return fmt::format("conic: {{radius_mm: {}, conic_constant: {}}}", R, K);
   }

@@ -98,7 +98,7 @@ TEST(FirstOrder, real_rays_near_the_axis_cross_at_pupils_and_focus_and_keep_the_
   int count = 0;
   double largest = 0;
   for (int i = 0; i < 300; ++i) {
-    prescription::Model model = random_model(u, {.zernike = false, .moved = false, .apertures = false});
+    prescription::Model model = random_model(u, {.departures = false, .moved = false, .apertures = false});
     for (auto& surface : model.surfaces) surface.stop = false;
     const auto stop = static_cast<std::size_t>(u() * (static_cast<double>(model.surfaces.size()) - 1.001));
     model.surfaces[stop].stop = true;

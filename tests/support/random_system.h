@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random prescriptions and rays for laws that hold for all of them: planes, conics and Zernike surfaces, lenses and
+// Random prescriptions and rays for laws that hold for all of them: shapes of every formula, lenses and
 // mirrors, virtual gaps, decentered and tilted, with apertures. Tame enough that most rays arrive.
 #pragma once
 
+#include <cmath>
+#include <map>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/support/point_sets.h"
@@ -13,17 +17,35 @@ namespace sagitta::test {
 using tests::Uniform;
 
 struct RandomKinds {
-  bool zernike = true, mirrors = true, moved = true, apertures = true;
+  bool departures = true, mirrors = true, moved = true, apertures = true;
 };
+
+inline prescription::Shape shape_of(const char* kind, std::map<std::string, double, std::less<>> numbers, std::vector<std::pair<int, double>> coefficients = {}) {
+  prescription::Shape shape;
+  shape.kind = kind;
+  shape.parameters.numbers = std::move(numbers);
+  shape.parameters.indexed["coefficients"] = std::move(coefficients);
+  return shape;
+}
 
 inline prescription::Shape random_shape(Uniform& u, const RandomKinds& kinds) {
   const double kind = u(), radius = (u() < 0.5 ? -1 : 1) * 8 * std::pow(10, u()), conic_constant = u(-3, 1.2);
   if (kind < 0.15) return {};
-  if (kind < 0.65 || !kinds.zernike) return conic_shape(radius, conic_constant);
+  if (kind < 0.55 || !kinds.departures) return conic_shape(radius, conic_constant);
   std::vector<std::pair<int, double>> coefficients;
-  for (int j = 3; j <= 20; ++j)
-    if (u() < 0.5) coefficients.push_back({j, u(-3, 3)});
-  return zernike_shape(radius, conic_constant, u(6, 12), std::move(coefficients));
+  if (kind < 0.75) {
+    for (int j = 3; j <= 20; ++j)
+      if (u() < 0.5) coefficients.push_back({j, u(-3, 3)});
+    return zernike_shape(radius, conic_constant, u(6, 12), std::move(coefficients));
+  }
+  const double other_radius = u() < 0.15 ? INFINITY : radius * u(0.7, 1.4), other_constant = u(-3, 1.2);
+  if (kind < 0.82) return shape_of("biconic", {{"radius_x_mm", other_radius}, {"radius_y_mm", radius}, {"conic_constant_x", other_constant}, {"conic_constant_y", conic_constant}});
+  const bool is_polynomial = kind >= 0.94;
+  for (int j = is_polynomial ? 1 : 2; j <= (is_polynomial ? 20 : 8); ++j)  // of 50 um at most, 6 mm from the vertex
+    if (u() < 0.5) coefficients.push_back({j, u(-0.05, 0.05) / std::pow(6, is_polynomial ? 0 : j)});
+  if (is_polynomial) return shape_of("xy_polynomial", {{"radius_mm", radius}, {"conic_constant", conic_constant}, {"normalization_radius_mm", 6}}, std::move(coefficients));
+  if (kind < 0.87) return shape_of("toroid", {{"radius_rotation_mm", other_radius}, {"radius_mm", radius}, {"conic_constant", conic_constant}}, std::move(coefficients));
+  return shape_of("asphere", {{"radius_mm", radius}, {"conic_constant", conic_constant}}, std::move(coefficients));
 }
 
 inline prescription::Model random_model(Uniform& u, const RandomKinds& kinds = {}) {
