@@ -150,6 +150,11 @@ TEST(Refraction, concentric_eye_is_the_same_in_every_direction) {
     expect_power(r.far_point, axis.far_point.M(), 0, 0, 1e-5);
   }
   EXPECT_NEAR(axis.paraxial.M(), axis.far_point.M(), 1e-6);
+  // A plane 12 mm before the cornea is farther away along an oblique chief ray.
+  for (const std::size_t field : {1u, 2u}) {
+    const double secant = std::hypot(1, std::hypot(eye.scene.fields[field].x, eye.scene.fields[field].y)), a = (eye.scene.pupil.z + 12) / 1000 * secant;
+    expect_power(refracted(eye, 12, field).far_point, 1 / (1 / axis.far_point.M() + a), 0, 0, 1e-5);
+  }
 }
 
 }  // namespace
