@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The refraction of an eye: the power of the thin lens that would make the object sharp on the retina, for one field and wavelength.
+// The refraction of an eye: the power of the thin lens that would make a distant object sharp on the retina, for one field and wavelength. (Where the
+// object of the scene is near, its own vergence is taken out.)
 //
 // The eye at its entrance pupil wants light of one vergence, different in different meridians. With (u, v) across the chief ray at the pupil's
 // centre, W(u, v) the wavefront error and V the vergence of the light that arrives (0 from infinity, -1/s from a point at s before the pupil),
