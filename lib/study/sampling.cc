@@ -132,9 +132,11 @@ JobRequest job_of(const SamplingRequest& request, const char* pattern, std::int6
   return job;
 }
 
+// Of a surface and the gap behind it.
 double weight_of(const prescription::Surface& surface, const std::string& interpolation) {
-  if (!surface.shape.cloud) return 1;
-  return interpolation == "linear" || interpolation == "c1" ? 10 : 80;
+  const double gap = surface.gradient ? 600 : 0;
+  if (!surface.shape.cloud) return gap + 1;
+  return gap + (interpolation == "linear" || interpolation == "c1" ? 10 : 80);
 }
 
 // Of a ray and of a sample of a wavefront, for all fields and wavelengths.

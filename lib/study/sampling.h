@@ -5,7 +5,8 @@
 // Spots by the patterns that fill the pupil, at rungs of 100, 300, 1000, ... rays per field and wavelength; wavefronts on grids of 16 x 16 and more. Between a
 // rung and the next come up to 8 counts more, of random patterns each with another seed, and at most N_f/(2 N) of them above a rung N of N_f, the finest, but one.
 // The finest are the largest of these rungs whose price stays within a budget:
-//   price = rays x fields x wavelengths x sum of weights,  weight 1 of a surface, 10 of points, 80 of points by radial functions (1)
+//   price = rays x fields x wavelengths x sum of weights,  weight 1 of a surface, 10 of points, 80 of points by radial functions, 600 of a gap with a
+//                                                               gradient index (1)
 // so that they do not depend on how fast the machine is. Every interpolation of a cloud takes the most rays of the first pattern and the finest grid; the
 // other clouds stay as given.
 //
