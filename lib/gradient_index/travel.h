@@ -16,7 +16,8 @@
 //
 // missed         the ray leaves the medium (n is no index any more) or the neighbourhood (a thousand times the distances that there were), without a crossing
 // outside_data   likewise, where it came through a hole or beyond the points of a measured surface
-// not_converged  a step falls below rounding, a crossing cannot be settled, or there are 20000 steps
+// not_converged  a step falls below rounding, a crossing cannot be settled, there are 5000 steps, or the ray has turned by 20 radians and gone ten times as far as
+//                it has got, with the distances that there were: it circles, and whether it ever comes is not known
 #pragma once
 
 #include "lib/gradient_index/leap.h"
@@ -26,7 +27,7 @@ namespace sagitta::gradient_index {
 
 using surface::Crossing, surface::Status;
 
-inline constexpr int most_steps = 20'000;
+inline constexpr int most_steps = 5000;
 inline constexpr double least_squared_index = 1e-6, largest_squared_index = 1e6;
 inline bool is_squared_index(double n2) { return n2 >= least_squared_index && n2 <= largest_squared_index; }
 
@@ -60,7 +61,7 @@ class Traveller {
     const Crossing<T> tangent = surface_.meet(start, direction);
     if (tangent.status == Status::ok && size_of(tangent.path) <= 8 * rounding * size_of(start)) return arrive(from_, at_, tangent);
     look_ahead(tangent);
-    while (steps_ < most_steps) {
+    while (steps_ < most_steps && !circles()) {
       const double turn_limit = std::sqrt(index_squared()) / size_of(at_.pull);
       const double h = sense_ * std::min(length_, turn_limit);
       if (!(std::abs(h) * std::sqrt(index_squared()) > 4 * rounding * size_of(from_.position))) break;
@@ -76,6 +77,8 @@ class Traveller {
         case Found::nothing_settled: length_ = std::abs(h) / 4; continue;
         case Found::none: break;
       }
+      gone_ += std::abs(h) * std::sqrt(index_squared());
+      turned_ += size_of(Vec3<T>(unit(next.behind.optical_direction) - unit(from_.optical_direction)));
       from_ = next.behind, at_ = at_next;
       if (!is_squared_index(index_squared()) || has_left()) return lost(why_);
       length_ = std::abs(h) * step_factor(next.error);
@@ -113,13 +116,15 @@ class Traveller {
     if (tangent.status == Status::outside_data) why_ = Status::outside_data;
     const double first = meets ? beyond * size_of(tangent.path) : away > 0 ? away : 1;
     length_ = first / std::sqrt(index_squared());
-    reach_ = 1000 * std::max(away, first);
+    scale_ = std::max(away, first);
   }
 
   bool has_left() const {
     const auto here = in_doubles(from_);
-    return norm(here.position) > reach_ && sense_ * dot(here.position, here.optical_direction) > 0;
+    return norm(here.position) > 1000 * scale_ && sense_ * dot(here.position, here.optical_direction) > 0;
   }
+
+  bool circles() const { return turned_ > 20 && gone_ > 10 * (scale_ + size_of(from_.position)); }
 
   // Whether the ray crosses the surface in the step to `to`.
   Found look_within(const State<T>& to, const InMedium<T>& at_to, double h) {
@@ -216,7 +221,7 @@ class Traveller {
   InMedium<T> at_{};
   Arrival<T> arrival_{};
   Status why_ = Status::missed;
-  double sense_ = 1, side_ = -1, length_ = 0, reach_ = 0;
+  double sense_ = 1, side_ = -1, length_ = 0, scale_ = 0, gone_ = 0, turned_ = 0;
   bool was_before_ = false, came_nearer_ = true;
   int steps_ = 0;
 };

@@ -277,6 +277,10 @@ TEST(Travel, ARayThatNeverComesIsLostInBoundedSteps) {
   const auto around = arrival(Maxwell{2, 1, 0}, 50, Plane{}, {0.5, 0, -50}, {0.3, 0, 1});  // a circle of about 1 mm
   EXPECT_EQ(around.crossing.status, Status::not_converged);
   EXPECT_EQ(around.steps, most_steps);
+  // 2026-11-23, found by fuzzing: circles of 4.6 mm about a fisheye of 1 mm, in a dome of 10 mm that they never meet, took all of 20000 steps, and a system of them minutes
+  const auto in_dome = arrival(Maxwell{2, 1.0000000000000002, 0}, 10, Sphere{-0.1}, {9, 0, -10}, {0, 0, 1});
+  EXPECT_EQ(in_dome.crossing.status, Status::not_converged);
+  EXPECT_LE(in_dome.steps, 1000);
   const auto beside = arrival(rod, 7, Sphere{10}, {0.5, 0, -7}, skew);  // a ball of 0.1 mm
   EXPECT_NE(beside.crossing.status, Status::ok);
   const Polynomial lens{.index = 1.4, .r_degree = 1, .r = {0, -0.01}};  // no index from 11.8 mm on
