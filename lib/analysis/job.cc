@@ -8,12 +8,14 @@
 #include <span>
 
 #include "lib/numerics/parallel.h"
+#include "lib/scene/first_order.h"
 #include "lib/trace/launch.h"
 #include "lib/trace/trace.h"
 
 namespace sagitta::analysis {
 namespace {
 
+using numerics::Vec3;
 using surface::Status;
 
 // Points of the pupil that all fields and wavelengths take before the next ones are made; and rays that travel together: few
@@ -50,7 +52,7 @@ trace::RayBatch traced(const scene::Scene& scene, std::size_t field, std::size_t
 // from there. A perfect image still has a size to draw: a nanometre.
 struct SpotFrames {
   struct Centre {
-    double x = 0, y = 0;
+    double x = 0, y = 0, z = 0;  // z: of one of the rays
   };
   std::vector<Centre> centres;
   double half_width = 1e-6;
@@ -62,10 +64,12 @@ bool frame_spots(const scene::Scene& scene, std::size_t field, std::span<const t
   bool centred = false;
   for (std::size_t w = 0; w < scene.wavelengths.size(); ++w) {
     SpotCollector collector(SpotImage(2, 1, 0, 0));
-    collector.add(traced(scene, field, w, pupil, 1));
+    const trace::RayBatch rays = traced(scene, field, w, pupil, 1);
+    collector.add(rays);
     const Spot spot = collector.spot();
     if (spot.rays[Status::ok] == 0) continue;
-    if (!centred) centre = {spot.centroid_x, spot.centroid_y};
+    const auto arrived = static_cast<std::size_t>(std::find(rays.ended.begin(), rays.ended.end(), 0) - rays.ended.begin());
+    if (!centred) centre = {spot.centroid_x, spot.centroid_y, rays.z[arrived]};
     centred = true;
     frames.half_width = std::max(frames.half_width, std::hypot(spot.centroid_x - centre.x, spot.centroid_y - centre.y) + spot.geometric_radius);
   }
@@ -84,6 +88,14 @@ SpotFrames spot_frames(const scene::Scene& scene, const JobRequest& request) {
       if (frame_spots(scene, field, pupil, frames)) break;
   }
   return frames;
+}
+
+// In the image surface's frame; none where angles from it say no more than x and y.
+std::optional<Vec3<double>> nodal_point_of(const scene::Scene& scene) {
+  const scene::Surface& image = scene.surface(scene.surface_count());
+  const double z = first_order(scene, scene.primary, 1).rear_nodal_point;
+  if (std::holds_alternative<surface::Plane>(image.shape) || !std::isfinite(z)) return {};
+  return image.global_from_local.inverse() * Vec3<double>{0, 0, z};
 }
 
 bool is_made_of_data(const surface::Shape& shape) {
@@ -146,9 +158,12 @@ std::vector<std::vector<JobResult>> run_jobs(std::span<const scene::Scene> scene
     }
     const double first_pixel = 2 * round_up(half_width) / request.spot_image_size;
     std::vector<SpotCollector> collectors;
+    std::vector<std::optional<AngularSpotCollector>> angular_collectors;
     for (const Task& task : tasks) {
       const SpotFrames::Centre& centre = frames[static_cast<std::size_t>(task.scene - scenes.data())].centres[task.result->field];
       collectors.emplace_back(SpotImage(request.spot_image_size, first_pixel, centre.x, centre.y));
+      angular_collectors.emplace_back();
+      if (const auto nodal_point = nodal_point_of(*task.scene)) angular_collectors.back().emplace(*nodal_point, Vec3<double>{centre.x, centre.y, centre.z});
     }
     // Each task has one thread, or some where there are few tasks; its rays are collected in their order.
     const int threads = numerics::thread_count_of(request.thread_count);
@@ -162,9 +177,11 @@ std::vector<std::vector<JobResult>> run_jobs(std::span<const scene::Scene> scene
       numerics::share_blocks(tasks.size(), threads, [&] {
         return [&](std::size_t i) {
           const auto& [scene, result] = tasks[i];
-          for (std::size_t from = 0; from < pupil.size(); from += batch)
-            collectors[i].add(traced(*scene, result->field, result->wavelength,
-                                     std::span(pupil).subspan(from, std::min(batch, pupil.size() - from)), threads_of_task));
+          for (std::size_t from = 0; from < pupil.size(); from += batch) {
+            const trace::RayBatch rays = traced(*scene, result->field, result->wavelength, std::span(pupil).subspan(from, std::min(batch, pupil.size() - from)), threads_of_task);
+            collectors[i].add(rays);
+            if (angular_collectors[i]) angular_collectors[i]->add(rays);
+          }
           const std::lock_guard lock(counting);
           done += static_cast<std::int64_t>(pupil.size());
           if (progress) progress(static_cast<double>(done) / all);
@@ -176,6 +193,7 @@ std::vector<std::vector<JobResult>> run_jobs(std::span<const scene::Scene> scene
     for (std::size_t i = 0; i < tasks.size(); ++i) {
       JobResult& result = *tasks[i].result;
       result.spot = collectors[i].spot();
+      if (angular_collectors[i]) result.angular_spot = angular_collectors[i]->spot(tasks[i].scene->surfaces.back().global_from_local.rotation);
       result.spot_image = collectors[i].image_with(pixel);
       result.rays = result.spot->rays;
     }

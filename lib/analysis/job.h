@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "lib/analysis/angular_spot.h"
 #include "lib/analysis/spot.h"
 #include "lib/analysis/wavefront.h"
 #include "lib/scene/scene.h"
@@ -37,6 +38,7 @@ struct JobResult {
   trace::StatusCounts rays;                // of the spot's rays, or of the wavefront's where only that is asked for
   std::vector<Coverage> coverage;          // of every surface made of data, by the same rays
   std::optional<Spot> spot;
+  std::optional<AngularSpot> angular_spot;  // beside it where the image surface is curved and there is a rear nodal point, that of the primary wavelength
   std::optional<SpotImage> spot_image;     // one pixel size for all the scenes of a job; centred, for all wavelengths of a field, on
                                            // the centroid of some pilot rays of the first one that has any: near the
                                            // spot's own centroid, not on it

@@ -70,13 +70,11 @@ void SpotImage::add_from_centre(const double* dx, const double* dy, std::size_t 
   pixels_per_mm_ /= 2;
 }
 
-void SpotCollector::add(const trace::RayBatch& rays) {
-  for (std::size_t from = 0; from < rays.size(); from += block_size) add_block(rays, from, std::min(block_size, rays.size() - from));
+void SpotCollector::add(const double* x, const double* y, const std::int32_t* ended, std::size_t count) {
+  for (std::size_t from = 0; from < count; from += block_size) add_block(x + from, y + from, ended + from, std::min(block_size, count - from));
 }
 
-void SpotCollector::add_block(const trace::RayBatch& rays, std::size_t from, std::size_t count) {
-  const double *x = &rays.x[from], *y = &rays.y[from];
-  const std::int32_t* ended = &rays.ended[from];
+void SpotCollector::add_block(const double* x, const double* y, const std::int32_t* ended, std::size_t count) {
   double arrived_x[block_size], arrived_y[block_size];
   std::int32_t any_ended = 0;
   for (std::size_t i = 0; i < count; ++i) any_ended |= ended[i];

@@ -48,14 +48,16 @@ class SpotCollector {
   // `image` is empty and tells the scale to begin with; its centre is the provisional centre.
   explicit SpotCollector(SpotImage image) : image_(std::move(image)) {}
 
-  void add(const trace::RayBatch& rays);
+  void add(const trace::RayBatch& rays) { add(rays.x.data(), rays.y.data(), rays.ended.data(), rays.size()); }
+  // Columns of a batch; `ended` as there.
+  void add(const double* x, const double* y, const std::int32_t* ended, std::size_t count);
   Spot spot() const;
   const SpotImage& image() const { return image_; }
   // Doubles the pixels until they are at least so large.
   SpotImage image_with(double pixel_mm) const;
 
  private:
-  void add_block(const trace::RayBatch& rays, std::size_t from, std::size_t count);
+  void add_block(const double* x, const double* y, const std::int32_t* ended, std::size_t count);
 
   trace::StatusCounts rays_;
   numerics::ColumnSum x_, y_, squares_;  // about the image's centre

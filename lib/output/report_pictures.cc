@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "lib/output/report_internal.h"
 
@@ -93,7 +94,7 @@ Panel spot_panel(const Report& report, const analysis::JobResult& result) {
   Panel panel;
   panel.title = panel_title(report, result);
   panel.subtitle = {fmt::format("RMS {:.4g} µm, geometric {:.4g} µm", 1e3 * spot.rms_radius, 1e3 * spot.geometric_radius),
-                    fmt::format("{} of {} rays", result.rays[surface::Status::ok], result.rays.total())};
+                    fmt::format("{}{} of {} rays", result.angular_spot ? fmt::format("RMS {:.4g} arcmin from N', ", 60 * 180 / std::numbers::pi * result.angular_spot->rms_radius) : "", result.rays[surface::Status::ok], result.rays.total())};
   panel.map = {image.size, image.size, floats(image.counts)};
   panel.axes = {image.pixel_mm, image.pixel_mm, image.centre_x, image.centre_y};
   panel.zero_is_background = true;

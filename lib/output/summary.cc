@@ -2,6 +2,8 @@
 // The results as JSON and as a table.
 #include <fmt/format.h>
 
+#include <numbers>
+
 #include "lib/output/report_internal.h"
 #include "lib/output/summary_internal.h"
 #include "lib/output/text.h"
@@ -83,6 +85,8 @@ ordered_json wavefront_json(const Report& report, const analysis::WavefrontResul
   return result;
 }
 
+double degrees(double angle) { return angle * 180 / std::numbers::pi; }
+
 ordered_json result_json(const Report& report, const analysis::JobResult& result) {
   ordered_json json = place_json(report, result);
   json["rays"] = rays_json(result.rays);
@@ -96,6 +100,10 @@ ordered_json result_json(const Report& report, const analysis::JobResult& result
     json["spot"] = {{"centroid_mm", {result.spot->centroid_x, result.spot->centroid_y}},
                     {"rms_radius_mm", result.spot->rms_radius},
                     {"geometric_radius_mm", result.spot->geometric_radius}};
+  if (const auto& angular = result.angular_spot)
+    json["spot"]["from_nodal_point"] = {{"centroid_deg", {degrees(angular->centroid_x), degrees(angular->centroid_y)}},
+                                        {"rms_radius_arcmin", 60 * degrees(angular->rms_radius)},
+                                        {"geometric_radius_arcmin", 60 * degrees(angular->geometric_radius)}};
   if (result.wavefront) {
     if (result.wavefront->wavefront) {
       json["wavefront"] = wavefront_json(report, *result.wavefront);
@@ -155,6 +163,7 @@ std::vector<std::string> remarks(const Report& report, const analysis::JobResult
 std::string summary_text(const Report& report) {
   const bool spots = !report.results.empty() && report.results.front().spot;
   const bool wavefronts = !report.results.empty() && report.results.front().wavefront;
+  const bool angles = !report.results.empty() && report.results.front().angular_spot;
   const bool covers = !report.results.empty() && !report.results.front().coverage.empty();
   Table table;
   const auto column = [&](std::string name, std::string unit = {}) { table.columns.push_back({std::move(name), std::move(unit)}); };
@@ -173,6 +182,7 @@ std::string summary_text(const Report& report) {
     column("RMS radius", "um");
     column("geometric", "um");
   }
+  if (angles) column("RMS radius", "arcmin");
   if (wavefronts) {
     column("OPD RMS", "waves");
     column("OPD P-V", "waves");
@@ -194,6 +204,7 @@ std::string summary_text(const Report& report) {
     if (result.spot)
       for (const double value : {1e3 * result.spot->rms_radius, 1e3 * result.spot->geometric_radius})
         row.push_back(significant(value));
+    if (result.angular_spot) row.push_back(significant(60 * degrees(result.angular_spot->rms_radius)));
     if (result.wavefront) {
       const auto& wavefront = result.wavefront->wavefront;
       row.push_back(wavefront ? significant(wavefront->rms_waves) : "-");
