@@ -53,12 +53,12 @@ class Rows {
  public:
   explicit Rows(output::Records& records) : records_(records) {}
 
-  void add(const std::string& varied, const study::Run& run, const study::CloudRun* cloud, const Found& found) {
+  void add(const std::string& varied, const study::Run& run, const study::CloudRun* cloud, const Found& found, const study::ToleranceRun* tolerance = nullptr) {
     const bool in_percent = found.truth.size() == 1 && found.truth.front() >= study::negligible(found.quantity, found.wavelength_um);
     const auto percent = [&](double error) { return in_percent ? cell(100 * error / found.truth.front()) : ""; };
     const study::Answer& value = study::answer_of(found.answers, found.quantity);
     records_.rows.push_back({study::name_of(found.quantity), varied, run.pattern, run.rays > 0 ? cell(run.rays) : "", run.grid > 0 ? cell(static_cast<std::int64_t>(run.grid)) : "",
-                             cloud ? cell(static_cast<std::int64_t>(cloud->surface_number)) : "", cloud ? cloud->interpolation : "",
+                             cloud ? cell(static_cast<std::int64_t>(cloud->surface_number)) : "", cloud ? cloud->interpolation : "", tolerance ? cell(tolerance->tolerance_mm) : "", tolerance ? cell(tolerance->steps) : "",
                              cell(static_cast<std::int64_t>(found.answers.field)), fmt::format("{:g}", found.wavelength_um * 1e3), cell(found.answers.launched), cell(found.answers.arrived),
                              study::unit_of(found.quantity), value.size() == 1 ? cell(value.front()) : "", cell(found.error), percent(found.error), cell(found.worst), cell(found.bound), percent(found.bound),
                              cell(found.uncertainty), cell(run.processor_s.median), cell(run.processor_s.least), cell(run.processor_s.most), cell(run.wall_s.median),
@@ -92,7 +92,7 @@ bool is_of_the_other_kind(const std::string& file, const std::string& key, const
 }
 
 output::Records system_records(const SystemStudy& system) {
-  output::Records records{{{"answer", true}, {"varied", true}, {"pattern", true}, {"rays"}, {"grid"}, {"surface"}, {"interpolation", true}, {"field"}, {"wavelength_nm"}, {"launched"}, {"arrived"},
+  output::Records records{{{"answer", true}, {"varied", true}, {"pattern", true}, {"rays"}, {"grid"}, {"surface"}, {"interpolation", true}, {"tolerance_mm"}, {"steps"}, {"field"}, {"wavelength_nm"}, {"launched"}, {"arrived"},
                            {"unit", true}, {"value"}, {"error"}, {"error_percent"}, {"worst_to_next"}, {"claim"}, {"claim_percent"}, {"truth_uncertainty"}, {"processor_s"}, {"processor_least_s"}, {"processor_most_s"},
                            {"wall_s"}, {"runs"}, {"prepare_s"}, {"reason", true}},
                           {}};
@@ -105,19 +105,22 @@ output::Records system_records(const SystemStudy& system) {
                  {curve.quantity, answers, system.sampling.wavelengths_um[answers.wavelength], curve.truths[k].value, curve.truths[k].uncertainty, step.errors[k], step.worst[k], step.bounds[k]});
       }
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  for (const study::CloudChange& change : system.changes) {
-    if (!change.run->reason.empty()) rows.add_failed(*change.run);
+  const auto add_changed = [&](const char* varied, const auto& changed, const auto& finest_run, const study::CloudRun* cloud, const study::ToleranceRun* tolerance) {
     for (const study::Quantity quantity : study::quantities) {
-      const study::Run& run = study::run_of(*change.run, quantity);
-      const auto& finest = study::run_of(*change.finest, quantity).answers;
+      const study::Run& run = study::run_of(changed, quantity);
+      const auto& finest = study::run_of(finest_run, quantity).answers;
       for (std::size_t k = 0; k < run.answers.size(); ++k) {
         const study::Answer truth = k < finest.size() ? study::answer_of(finest[k], quantity) : study::Answer{};
         const study::Answers& answers = run.answers[k];
-        rows.add("interpolation", run, change.run,
-                 {quantity, answers, system.sampling.wavelengths_um[answers.wavelength], truth, none, study::error_of(study::answer_of(answers, quantity), truth), none, none});
+        rows.add(varied, run, cloud, {quantity, answers, system.sampling.wavelengths_um[answers.wavelength], truth, none, study::error_of(study::answer_of(answers, quantity), truth), none, none}, tolerance);
       }
     }
+  };
+  for (const study::CloudChange& change : system.changes) {
+    if (!change.run->reason.empty()) rows.add_failed(*change.run);
+    add_changed("interpolation", *change.run, *change.finest, change.run, nullptr);
   }
+  for (const study::ToleranceChange& change : system.tolerances) add_changed("tolerance", *change.run, *system.tolerances.front().run, nullptr, change.run);
   return records;
 }
 
@@ -132,8 +135,8 @@ int study_system(const StudyOptions& options) {
   const study::Sampling sampling = sample_with_progress(*model, options.thread_count);
   if (!report(prescription::in_order(sampling.findings, model->documents))) return 1;
 
-  SystemStudy system{*model, sampling, study::curves_of(sampling), study::changes_of(sampling), {}, {}};
-  system.advice = study::advice(system.curves, system.changes);
+  SystemStudy system{*model, sampling, study::curves_of(sampling), study::changes_of(sampling), study::tolerance_changes_of(sampling), {}, {}};
+  system.advice = study::advice(system.curves, system.changes, system.tolerances);
   for (std::string& line : study::missing_answers(sampling)) system.advice.push_back(std::move(line));
   system.truth_note = study::truth_note(system.curves, system.changes);
 

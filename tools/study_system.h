@@ -24,6 +24,7 @@ struct SystemStudy {
   const study::Sampling& sampling;
   std::vector<study::Curve> curves;
   std::vector<study::CloudChange> changes;
+  std::vector<study::ToleranceChange> tolerances;
   std::vector<std::string> advice;  // and what has no answer
   std::string truth_note;
 };

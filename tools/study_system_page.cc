@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 #include <thread>
@@ -102,6 +103,25 @@ SystemPlot plot_of_clouds(const SystemStudy& system, Quantity quantity) {
   return plot;
 }
 
+// The tightest tolerance is the truth: no point.
+SystemPlot plot_of_tolerances(const SystemStudy& system, Quantity quantity) {
+  SystemPlot plot;
+  plot.file = fmt::format("{}-steps", file_of(quantity));
+  plot.chart.title = title_of(system, fmt::format("{} against the steps in gradients", error_name(quantity)));
+  plot.chart.x_label = "steps of a ray through all the gradients, mean";
+  output::ChartSeries series{"by tolerance", {}, true, {}};
+  for (const study::ToleranceChange& change : system.tolerances) {
+    const study::Worst& worst = change.change[static_cast<std::size_t>(quantity)];
+    if (!(worst.main() > 0)) continue;
+    plot.chart.y_label = fmt::format("{}, worst field and wavelength ({})", error_name(quantity), unit_of(worst, quantity));
+    series.points.push_back({change.run->steps, worst.main()});
+    if (change.run->is_given) plot.chart.references.push_back({true, change.run->steps, fmt::format("tolerance_mm {:g}, as given", change.run->tolerance_mm)});
+  }
+  if (series.points.size() > 1) plot.chart.series.push_back(std::move(series));
+  if (!system.tolerances.empty()) plot.chart.footer = fmt::format("truth: tolerance_mm {:g}, by the same code; {}", system.tolerances.front().run->tolerance_mm, machine_note());
+  return plot;
+}
+
 std::string count_name(Quantity quantity) { return quantity == Quantity::spot_rms ? "rays" : "samples"; }
 
 std::string cell_of(double error) { return error == 0 ? "truth" : std::isfinite(error) ? significant(error, 2) : "-"; }
@@ -162,6 +182,26 @@ std::string clouds_section(const SystemStudy& system) {
   return text;
 }
 
+std::string tolerances_section(const SystemStudy& system) {
+  if (system.tolerances.empty()) return {};
+  std::vector<std::string> names{"tolerance_mm", "steps of a ray"};
+  for (const Quantity quantity : study::quantities) names.push_back(fmt::format("change of {}", quantity == Quantity::zernike ? "the worst coefficient" : study::name_of(quantity)));
+  names.push_back("ns a ray");
+  const study::ToleranceRun& truth = *system.tolerances.front().run;
+  std::string text = fmt::format("\n## Steps in gradients\n\nThe same {} rays and {} samples by every tolerance; changes are from tolerance_mm {:g}, the worst of fields and wavelengths.\n\n{}", study::text_of(truth.spots),
+                                 study::text_of(truth.wavefronts), truth.tolerance_mm, head_of(names));
+  for (const study::ToleranceChange& change : system.tolerances) {
+    std::vector<std::string> cells{fmt::format("{:g}{}", change.run->tolerance_mm, change.run->is_given ? ", as given" : ""), significant(change.run->steps, 3)};
+    for (const Quantity quantity : study::quantities) {
+      const study::Worst& worst = change.change[static_cast<std::size_t>(quantity)];
+      cells.push_back(std::isnan(worst.main()) ? "-" : study::text_of(worst, quantity));
+    }
+    cells.push_back(significant(study::ns_per_ray(change.run->spots), 3));
+    text += line_of(cells);
+  }
+  return text;
+}
+
 std::string answers_section(const SystemStudy& system) {
   std::string text = "\n## The answers\n\nOf the finest, with what they may be off by.\n\n" + head_of({"field", "wavelength nm", "spot RMS µm", "±", "wavefront RMS waves", "±"});
   const auto first_of = [&](Quantity quantity) { return std::find_if(system.curves.begin(), system.curves.end(), [&](const Curve& curve) { return curve.quantity == quantity; }); };
@@ -193,7 +233,8 @@ std::vector<SystemPlot> system_plots(const SystemStudy& system) {
   for (const Quantity quantity : study::quantities) {
     if (std::none_of(system.curves.begin(), system.curves.end(), [&](const Curve& curve) { return curve.quantity == quantity; })) continue;
     for (const bool is_over_time : {false, true}) plots.push_back(plot_of(system, quantity, is_over_time));
-    if (SystemPlot plot = plot_of_clouds(system, quantity); !plot.chart.series.empty()) plots.push_back(std::move(plot));
+    for (SystemPlot& plot : std::vector{plot_of_clouds(system, quantity), plot_of_tolerances(system, quantity)})
+      if (!plot.chart.series.empty()) plots.push_back(std::move(plot));
   }
   return plots;
 }
@@ -213,6 +254,7 @@ std::string system_page(const SystemStudy& system, const std::vector<SystemPlot>
   if (!system.curves.empty()) text += answers_section(system);
   for (const Quantity quantity : study::quantities) text += section_of(system, quantity);
   text += clouds_section(system);
+  text += tolerances_section(system);
   if (!plots.empty()) text += "\n## Plots\n";
   for (const SystemPlot& plot : plots) text += fmt::format("\n![{}]({}.svg)\n", plain(plot.chart.title), plot.file);
   return text;

@@ -105,19 +105,46 @@ std::string line_of_patterns(std::span<const Curve> curves) {
   return fmt::format("the {} to {} takes {}", name_of(first.quantity), target_text(first, target), fmt::join(words, ", "));
 }
 
+// "the spot RMS by 0.3 %, a Zernike coefficient by 2e-3 um"; empty where there is no answer.
+std::string text_of(const std::array<Worst, quantities.size()>& change) {
+  std::vector<std::string> words;
+  for (const Quantity quantity : quantities) {
+    const Worst& worst = change[static_cast<std::size_t>(quantity)];
+    if (std::isnan(worst.main())) continue;
+    words.push_back(fmt::format("{} by {}", quantity == Quantity::zernike ? "a Zernike coefficient" : fmt::format("the {}", name_of(quantity)), text_of(worst, quantity)));
+  }
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
 std::string line_of(const CloudChange& change) {
   const CloudRun &run = *change.run, &finest = *change.finest;
   const std::string where = run.surface.empty() ? fmt::format("surface {}", run.surface_number) : fmt::format("'{}'", run.surface);
   if (!run.reason.empty()) return fmt::format("{} at {}: {}", run.interpolation, where, run.reason);
-  std::vector<std::string> words;
-  for (const Quantity quantity : quantities) {
-    const Worst& worst = change.change[static_cast<std::size_t>(quantity)];
-    if (std::isnan(worst.main())) continue;
-    words.push_back(fmt::format("{} by {}", quantity == Quantity::zernike ? "a Zernike coefficient" : fmt::format("the {}", name_of(quantity)), text_of(worst, quantity)));
-  }
+  const std::string words = text_of(change.change);
   if (words.empty()) return fmt::format("{} at {}: there is no answer of {} to compare with", run.interpolation, where, finest.interpolation);
   return fmt::format("{}{} in place of {} at {} changes {}; a ray takes {} times as long", run.interpolation, run.is_given ? ", as given," : "", finest.interpolation, where,
-                     fmt::join(words, ", "), two_digits(change.time_ratio));
+                     words, two_digits(change.time_ratio));
+}
+
+constexpr double next_to_no_percent = 0.01;
+
+// The system's own tolerance and the loosest that changes next to nothing; the truth is the first.
+std::vector<std::string> lines_of(const std::vector<ToleranceChange>& changes) {
+  std::vector<const ToleranceChange*> told;
+  for (const ToleranceChange& change : changes)
+    if (change.run->is_given) told.push_back(&change);
+  const auto loosest = std::find_if(changes.rbegin(), changes.rend(), [](const ToleranceChange& change) {
+    return std::all_of(change.change.begin(), change.change.end(), [](const Worst& worst) { return !(worst.percent > next_to_no_percent); });
+  });
+  if (loosest != changes.rend() && !loosest->run->is_given) told.push_back(&*loosest);
+  std::vector<std::string> lines;
+  for (const ToleranceChange* change : told) {
+    const std::string words = text_of(change->change), steps = fmt::format("{:.3g} steps of a ray in gradients", change->run->steps);
+    lines.push_back(fmt::format("tolerance_mm {:g}{}: {}{}", change->run->tolerance_mm, change->run->is_given ? ", as given" : "", steps,
+                                words.empty() ? "" : fmt::format("; against {:g} it changes {}", changes.front().run->tolerance_mm, words)));
+    if (!change->run->is_given) lines.back() += fmt::format("; a ray takes {} times as long", two_digits(change->time_ratio));
+  }
+  return lines;
 }
 
 }  // namespace
@@ -138,7 +165,7 @@ std::string text_of_seconds(double seconds) {
   return two_digits(seconds) + " s";
 }
 
-std::vector<std::string> advice(const std::vector<Curve>& curves, const std::vector<CloudChange>& changes) {
+std::vector<std::string> advice(const std::vector<Curve>& curves, const std::vector<CloudChange>& changes, const std::vector<ToleranceChange>& tolerances) {
   std::vector<std::string> lines;
   for (auto first = curves.begin(); first != curves.end();) {
     const auto end = std::find_if(first, curves.end(), [&](const Curve& curve) { return curve.quantity != first->quantity; });
@@ -148,6 +175,7 @@ std::vector<std::string> advice(const std::vector<Curve>& curves, const std::vec
   }
   for (const CloudChange& change : changes)
     if (change.run != change.finest || !change.run->reason.empty()) lines.push_back(line_of(change));
+  for (std::string& line : lines_of(tolerances)) lines.push_back(std::move(line));
   return lines;
 }
 

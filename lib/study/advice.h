@@ -12,8 +12,8 @@ namespace sagitta::study {
 
 // "1e4 rays give the spot RMS to 0.3 % in 2 ms; 1e3 to 3 % in 0.3 ms": those that `trace` takes unless asked, then the fewest for 1 % and
 // 0.1 %, in the first of its patterns, and what that takes in the others; likewise the samples of wavefronts; then what each
-// interpolation changes.
-std::vector<std::string> advice(const std::vector<Curve>& curves, const std::vector<CloudChange>& changes);
+// interpolation changes; of gradients the steps of a ray and what they leave, at the system's own tolerance and at the loosest that changes no RMS by more than 0.01 %.
+std::vector<std::string> advice(const std::vector<Curve>& curves, const std::vector<CloudChange>& changes, const std::vector<ToleranceChange>& tolerances = {});
 
 // What the truth is, how far it may be off, and that it is not independent.
 std::string truth_note(const std::vector<Curve>& curves, const std::vector<CloudChange>& changes);

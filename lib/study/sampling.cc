@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "lib/analysis/job.h"
+#include "lib/analysis/plan.h"
 #include "lib/numerics/zernike_basis.h"
 #include "lib/scene/compile.h"
 #include "lib/study/variant_internal.h"
@@ -29,6 +30,9 @@ constexpr double fit_weight = 500;  // of a sample of a wavefront: its share of 
 // Whatever the budget: those that `trace` takes unless asked, and two finer.
 constexpr std::int64_t least_finest_rays = 100'000;
 constexpr int least_finest_grid = 128;
+// By which tolerances are compared: the same rays for all, so that few tell.
+constexpr std::int64_t tolerance_rays = 1000;
+constexpr int tolerance_grid = 32;
 
 // Where counts lie between a rung and the next, of a logarithmic scale: multiples of the golden ratio, which come near no simple part of it.
 std::vector<double> places_between(double rung, double next, double finest) {
@@ -176,6 +180,24 @@ CloudRun measured_cloud(prescription::Model model, std::size_t at, const std::st
   return result;
 }
 
+// Rising; the system's own among them.
+std::vector<double> tolerances_of(const prescription::Model& system) {
+  std::vector<double> tolerances{1e-14, 1e-12, 1e-10, 1e-8, 1e-6, 1e-4, 1e-3, system.tolerance_mm};
+  std::sort(tolerances.begin(), tolerances.end());
+  tolerances.erase(std::unique(tolerances.begin(), tolerances.end()), tolerances.end());
+  return tolerances;
+}
+
+ToleranceRun measured_tolerance(prescription::Model model, double tolerance_mm, const JobRequest& spots, const JobRequest& wavefronts) {
+  ToleranceRun result{tolerance_mm, model.tolerance_mm == tolerance_mm, 0, {}, {}};
+  model.tolerance_mm = tolerance_mm;
+  CompiledSystem system(model);
+  for (const analysis::SurfacePlan& surface : analysis::plan_of(system.compiled(), spots).surfaces) result.steps += surface.gradient_steps.value_or(0);
+  result.spots = measured(system, spots, patterns[0]);
+  result.wavefronts = measured(system, wavefronts, patterns[0]);
+  return result;
+}
+
 }  // namespace
 
 Sampling sample_system(const prescription::Model& system, const SamplingRequest& request, const std::function<void(double)>& progress) {
@@ -237,6 +259,11 @@ Sampling sample_system(const prescription::Model& system, const SamplingRequest&
       }});
     }
   }
+  if (std::any_of(system.surfaces.begin(), system.surfaces.end(), [](const prescription::Surface& surface) { return surface.gradient.has_value(); }))
+    for (const double tolerance_mm : tolerances_of(system))
+      work.push_back({prices.of(tolerance_rays, tolerance_grid), [&, tolerance_mm] {
+        sampling.tolerances.push_back(measured_tolerance(system, tolerance_mm, job_of(request, patterns[0], tolerance_rays, 0), job_of(request, patterns[0], 0, tolerance_grid)));
+      }});
   double total = 0, done = 0;
   for (const Work& one : work) total += one.price;
   for (const Work& one : work) {

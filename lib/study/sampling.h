@@ -13,6 +13,9 @@
 // So a claim (convergence.h) of hexapolar rays, clipped or not, broke on none of 675 answers by counts that were not measured, of the other patterns on 3 of 1350
 // (tests/study/sampling_slow_test.cc).
 //
+// Rays in gradients are integrated to a tolerance: of a system with any, a few rays and samples run by each of a ladder of tolerances, the tightest the truth, with
+// the steps that a ray takes.
+//
 // Times are of the rungs: launching, tracing and collecting; short runs are repeated. Reading, compiling, drawing and writing are not in them.
 #pragma once
 
@@ -51,6 +54,13 @@ struct Run {
   std::vector<std::vector<Answers>> beyond = {};  // of the counts between it and the next rung, rising
 };
 
+// Of processor time, through the whole system.
+inline double ns_per_ray(const Run& run) {
+  double rays = 0;
+  for (const Answers& answers : run.answers) rays += static_cast<double>(answers.launched);
+  return 1e9 * run.processor_s.median / rays;
+}
+
 // One interpolation of one cloud, all else as given.
 struct CloudRun {
   int surface_number = 0;
@@ -60,12 +70,15 @@ struct CloudRun {
   double prepare_s = 0;    // processor, of compiling the whole system
   Run spots, wavefronts;
 
-  // Of processor time, through the whole system; NaN where there is no run.
-  double ns_per_ray() const {
-    double rays = 0;
-    for (const Answers& answers : spots.answers) rays += static_cast<double>(answers.launched);
-    return 1e9 * spots.processor_s.median / rays;
-  }
+  double ns_per_ray() const { return study::ns_per_ray(spots); }  // NaN where there is no run
+};
+
+// One tolerance of the integration through gradients, all else as given.
+struct ToleranceRun {
+  double tolerance_mm = 0;
+  bool is_given = false;  // the system's own
+  double steps = 0;       // of a ray through all the gradients, on average over some rays of every field
+  Run spots, wavefronts;
 };
 
 struct Sampling {
@@ -74,6 +87,7 @@ struct Sampling {
   std::vector<std::vector<Run>> spots;    // by pattern, the one of the truth first; by rising rays
   std::vector<Run> wavefronts;            // by rising grid
   std::vector<CloudRun> clouds;           // surface by surface; c1, the truth, first
+  std::vector<ToleranceRun> tolerances;   // rising, the truth first; none where there is no gradient
 };
 
 // Calls `progress` with the share that is done, in [0, 1].

@@ -69,6 +69,20 @@ std::vector<Truth> truths_of(Quantity quantity, std::span<const Run> runs) {
   return truths;
 }
 
+// Of one interpolation or tolerance, from the finest.
+template <class AnyRun>
+std::array<Worst, quantities.size()> change_of(const Sampling& sampling, const AnyRun& run, const AnyRun& finest) {
+  std::array<Worst, quantities.size()> change;
+  for (const Quantity quantity : quantities) {
+    const auto &finer = run_of(finest, quantity).answers, &other = run_of(run, quantity).answers;  // none where one has failed
+    for (std::size_t k = 0; k < std::min(finer.size(), other.size()); ++k) {
+      const Answer& truth = answer_of(finer[k], quantity);
+      if (!truth.empty()) add(change[static_cast<std::size_t>(quantity)], quantity, error_of(answer_of(other[k], quantity), truth), truth, wavelength_of(sampling, finer[k]));
+    }
+  }
+  return change;
+}
+
 }  // namespace
 
 const char* name_of(Quantity quantity) {
@@ -106,17 +120,16 @@ std::vector<CloudChange> changes_of(const Sampling& sampling) {
   const CloudRun* finest = nullptr;
   for (const CloudRun& run : sampling.clouds) {
     if (!finest || finest->surface_number != run.surface_number) finest = &run;
-    CloudChange change{&run, finest, run.ns_per_ray() / finest->ns_per_ray(), {}};
-    for (const Quantity quantity : quantities) {
-      const auto &finer = run_of(*finest, quantity).answers, &other = run_of(run, quantity).answers;  // none where one has failed
-      for (std::size_t k = 0; k < std::min(finer.size(), other.size()); ++k) {
-        const Answer& truth = answer_of(finer[k], quantity);
-        if (!truth.empty())
-          add(change.change[static_cast<std::size_t>(quantity)], quantity, error_of(answer_of(other[k], quantity), truth), truth, wavelength_of(sampling, finer[k]));
-      }
-    }
-    changes.push_back(change);
+    changes.push_back({&run, finest, run.ns_per_ray() / finest->ns_per_ray(), change_of(sampling, run, *finest)});
   }
+  return changes;
+}
+
+std::vector<ToleranceChange> tolerance_changes_of(const Sampling& sampling) {
+  std::vector<ToleranceChange> changes;
+  const auto given = std::find_if(sampling.tolerances.begin(), sampling.tolerances.end(), [](const ToleranceRun& run) { return run.is_given; });
+  for (const ToleranceRun& run : sampling.tolerances)
+    changes.push_back({&run, ns_per_ray(run.spots) / ns_per_ray(given->spots), change_of(sampling, run, sampling.tolerances.front())});
   return changes;
 }
 

@@ -56,8 +56,9 @@ struct Curve {
 // that no field and wavelength has is left out.
 std::vector<Curve> curves_of(const Sampling& sampling);
 
-// The run that gives an answer.
-inline const Run& run_of(const CloudRun& run, Quantity quantity) { return quantity == Quantity::spot_rms ? run.spots : run.wavefronts; }
+// The run that gives an answer, of one interpolation or tolerance.
+template <class AnyRun>
+const Run& run_of(const AnyRun& run, Quantity quantity) { return quantity == Quantity::spot_rms ? run.spots : run.wavefronts; }
 
 // What another interpolation changes, from the first of its surface, c1, which is the finest; NaN where there is none to compare.
 struct CloudChange {
@@ -66,5 +67,13 @@ struct CloudChange {
   std::array<Worst, quantities.size()> change;
 };
 std::vector<CloudChange> changes_of(const Sampling& sampling);
+
+// What another tolerance in gradients changes, from the first, which is the tightest.
+struct ToleranceChange {
+  const ToleranceRun* run = nullptr;
+  double time_ratio = std::numeric_limits<double>::quiet_NaN();  // to the system's own, of a ray through the whole system
+  std::array<Worst, quantities.size()> change;
+};
+std::vector<ToleranceChange> tolerance_changes_of(const Sampling& sampling);
 
 }  // namespace sagitta::study

@@ -101,5 +101,14 @@ TEST(Advice, CountsMissingAnswersByTheirReason) {
                                                      "no Zernike coefficients for 1 of 3 fields and wavelengths: too few"));
 }
 
+TEST(Advice, OfGradientsNamesTheGivenToleranceAndTheLoosestThatChangesNextToNothing) {
+  const ToleranceRun tight{1e-14, false, 31.4, {}, {}}, given{1e-12, true, 12, {}, {}}, loose{1e-6, false, 5.25, {}, {}}, loosest{1e-3, false, 2, {}, {}};
+  const std::vector<ToleranceChange> changes{{&tight, 3, {percent(0), percent(0), absolute(0)}}, {&given, 1, {percent(1.21e-9), percent(2e-8), absolute(3e-12)}},
+                                             {&loose, .512, {percent(.0099), Worst{}, absolute(.02)}}, {&loosest, .3, {percent(.0001), percent(.0101), absolute(1)}}};
+  EXPECT_THAT(advice({}, {}, changes),
+              ElementsAre("tolerance_mm 1e-12, as given: 12 steps of a ray in gradients; against 1e-14 it changes the spot RMS by 1.3e-9 %, the wavefront RMS by 2e-8 %, a Zernike coefficient by 3e-12 µm",
+                          "tolerance_mm 1e-06: 5.25 steps of a ray in gradients; against 1e-14 it changes the spot RMS by 0.0099 %, a Zernike coefficient by 0.02 µm; a ray takes 0.51 times as long"));
+}
+
 }  // namespace
 }  // namespace sagitta::study
