@@ -19,6 +19,7 @@
 #include "lib/numerics/key.h"
 #include "lib/numerics/zernike_basis.h"
 #include "lib/prescription/cloud_reader.h"
+#include "lib/prescription/yaml_tree.h"
 #include "lib/scene/fit_zernike.h"
 #include "tools/commands.h"
 #include "tools/version.h"
@@ -48,12 +49,13 @@ CLI::Option* add_settings(CLI::App& command, SystemOptions& options) {
     for (const std::string& text : given) {
       const std::size_t end = text.find('=');
       const std::string name = text.substr(0, end);
-      double value = 0;
-      if (end == std::string::npos || end == 0 || !CLI::detail::lexical_cast(text.substr(end + 1), value) || !std::isfinite(value))
+      const bool has_both = end != std::string::npos && end != 0;
+      const auto value = has_both ? sagitta::prescription::parse_number(std::string_view(text).substr(end + 1)) : sagitta::prescription::ParsedNumber{};
+      if (!value.ok || !std::isfinite(value.value))
         throw CLI::ValidationError("--set", fmt::format("{}: expected NAME=VALUE with a number, such as accommodation_D=4", text));
       for (const auto& before : options.settings)
         if (before.name == name) throw CLI::ValidationError("--set", fmt::format("{} is set twice", name));
-      options.settings.push_back({name, value});
+      options.settings.push_back({name, value.value});
     }
   };
   return command.add_option_function<std::vector<std::string>>("--set", take, "NAME=VALUE: sets a parameter that the system declares; for several, several times")

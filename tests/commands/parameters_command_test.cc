@@ -98,7 +98,7 @@ TEST(Parameters, a_setting_that_means_nothing_is_wrong_usage) {
                                      "study --system " + arizona + " -o " + folder.path("out"), "compare " + navarro + " " + arizona + " -o " + folder.path("out")})
     usage(command + " --set acommodation_D=1", unknown);
   EXPECT_FALSE(std::filesystem::exists(folder.path("out")));
-  for (const char* text : {"accommodation_D", "accommodation_D=", "accommodation_D=x", "=1", "accommodation_D=nan", "accommodation_D=inf", "accommodation_D=1D"})
+  for (const char* text : {"accommodation_D", "accommodation_D=", "accommodation_D=x", "=1", "accommodation_D=nan", "accommodation_D=inf", "accommodation_D=1D", "accommodation_D=0x10"})
     usage("check " + arizona + " --set " + text, fmt::format("--set: {}: expected NAME=VALUE with a number", text));
   usage("check " + arizona + " --set accommodation_D=1 --set accommodation_D=2", "accommodation_D is set twice");
   EXPECT_EQ(run_program("check --set accommodation_D=1 " + arizona).status, 0);  // takes no further argument
