@@ -10,6 +10,7 @@
 #include "lib/scene/cloud_fit.h"
 #include "lib/scene/compile_cloud.h"
 #include "lib/scene/compile_gradient.h"
+#include "lib/scene/compile_grid.h"
 #include "lib/scene/triangulate.h"
 
 namespace sagitta::scene {
@@ -203,6 +204,8 @@ CompileResult compile_for(const Model& model, const Beam& beam) {
       surface.shape = compiled.shape;
       clouds[i] = compiled.cloud;
       if (compiled.smoothing) result.smoothing[number] = *compiled.smoothing;
+    } else if (given.shape.grid) {
+      surface.shape = compile_grid(given.shape, scene.arena);
     } else {
       const surface::Shape prescribed = compile_shape(given.shape, scene.arena);
       surface.shape = surface::least_form(prescribed);
