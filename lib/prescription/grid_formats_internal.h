@@ -11,5 +11,6 @@ namespace sagitta::prescription {
 inline constexpr double smallest_grid_length = 1e-15, largest_grid_length = 1e15, largest_grid_value = 1e100;
 
 std::shared_ptr<SagGrid> read_zemax_grid(const GridRequest& request, CloudErrors& errors, Findings& findings);
+std::shared_ptr<SagGrid> read_xyz_grid(const GridRequest& request, CloudErrors& errors, Findings& findings);
 
 }  // namespace sagitta::prescription

@@ -18,7 +18,7 @@ struct Format {
 };
 
 // The closed list of formats; the first is the default.
-constexpr std::array formats{Format{"zemax", read_zemax_grid}};
+constexpr std::array formats{Format{"zemax", read_zemax_grid}, Format{"xyz", read_xyz_grid}};
 
 // Whether any cell has data at its four corners.
 bool has_a_cell(const SagGrid& grid) {

@@ -16,7 +16,7 @@ struct GridRequest {
   std::string format;  // one of grid_formats()
 };
 
-// "zemax|...": the choices of the key `format`.
+// "zemax|xyz": the choices of the key `format`.
 std::string_view grid_formats();
 
 // Null, and errors at places in the grid's file, where it cannot be read, or where no cell has data at all its corners. Notes tell of nodes without data.

@@ -125,7 +125,7 @@ Shape read_shape(const ShapeKind& kind, const YamlNode& node, KnownFiles& known,
   Shape shape{.kind = std::string(kind.name), .parameters = read_parameters(section, kind.keys), .cloud = nullptr, .place = node.place};
   for (const Key& key : kind.keys) {
     if (key.kind != ValueKind::file) continue;
-    if (kind.name == surface::Grid::kind) shape.grid = read_grid_of(std::string(key.name), shape.parameters, known, findings);
+    if (kind.name == surface::BicubicGrid::kind) shape.grid = read_grid_of(std::string(key.name), shape.parameters, known, findings);
     else shape.cloud = read_points(std::string(key.name), shape.parameters, known, findings);
   }
   return shape;

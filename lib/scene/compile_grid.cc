@@ -14,7 +14,7 @@ namespace sagitta::scene {
 namespace {
 
 using prescription::SagGrid;
-using surface::Grid;
+using surface::BicubicGrid;
 using surface::GridNode;
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
@@ -68,8 +68,8 @@ class GridMaker {
     surround();
   }
 
-  Grid into(const SagGrid& given, const surface::Conic& base, numerics::Arena& arena) && {
-    Grid result;
+  BicubicGrid into(const SagGrid& given, const surface::Conic& base, numerics::Arena& arena) && {
+    BicubicGrid result;
     result.base = surface::Quadric::of(base, base);
     result.count_x = count_x_, result.count_y = count_y_;
     result.first_x = given.first_x, result.first_y = given.first_y, result.spacing_x = given.spacing_x, result.spacing_y = given.spacing_y;
@@ -178,9 +178,9 @@ class GridMaker {
 
 }  // namespace
 
-Grid grid_surface(const SagGrid& given, const surface::Conic& base, numerics::Arena& arena) { return GridMaker(given).into(given, base, arena); }
+BicubicGrid grid_surface(const SagGrid& given, const surface::Conic& base, numerics::Arena& arena) { return GridMaker(given).into(given, base, arena); }
 
-Grid compile_grid(const prescription::Shape& given, numerics::Arena& arena) {
+BicubicGrid compile_grid(const prescription::Shape& given, numerics::Arena& arena) {
   return grid_surface(*given.grid, {1 / given.parameters.number("radius_mm"), given.parameters.number("conic_constant")}, arena);
 }
 

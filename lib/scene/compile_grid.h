@@ -14,9 +14,9 @@
 
 namespace sagitta::scene {
 
-surface::Grid grid_surface(const prescription::SagGrid& given, const surface::Conic& base, numerics::Arena& arena);
+surface::BicubicGrid grid_surface(const prescription::SagGrid& given, const surface::Conic& base, numerics::Arena& arena);
 
 // Of a shape that has a grid.
-surface::Grid compile_grid(const prescription::Shape& given, numerics::Arena& arena);
+surface::BicubicGrid compile_grid(const prescription::Shape& given, numerics::Arena& arena);
 
 }  // namespace sagitta::scene

@@ -51,11 +51,11 @@ struct GridBends {
   void include(const GridBends& other) { xx = std::max(xx, other.xx), xy = std::max(xy, other.xy), yy = std::max(yy, other.yy); }
 };
 
-struct Grid : QuadricDeparture<Grid> {
+struct BicubicGrid : QuadricDeparture<BicubicGrid> {
   static constexpr std::string_view kind = "grid";
   static constexpr std::array keys{
       numerics::Key{.name = "points", .kind = numerics::ValueKind::file, .meaning = "file of the heights", .required = true},
-      numerics::Key{.name = "format", .kind = numerics::ValueKind::text, .meaning = "format of the file", .choices = "zemax"},
+      numerics::Key{.name = "format", .kind = numerics::ValueKind::text, .meaning = "format of the file", .choices = "zemax|xyz"},
       base_radius_key, base_conic_constant_key};
 
   // Nodes count along both axes from 0 at the least x and y; with the row around them they are in rows of rising y, each of rising x.

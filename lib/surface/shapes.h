@@ -23,7 +23,7 @@
 
 namespace sagitta::surface {
 
-using Shape = std::variant<Plane, Sphere, Conic, Asphere, Biconic, Toroid, XyPolynomial, Zernike, Grid, Facets, Patches, RadialPatches<RadialFunction::cubic>,
+using Shape = std::variant<Plane, Sphere, Conic, Asphere, Biconic, Toroid, XyPolynomial, Zernike, BicubicGrid, Facets, Patches, RadialPatches<RadialFunction::cubic>,
                            RadialPatches<RadialFunction::thin_plate>, RadialPatches<RadialFunction::multiquadric>>;
 
 // Shapes that are met in lanes, by a formula.
