@@ -184,6 +184,28 @@ TEST(Grid, IsMetByLinesThatMeetTheBaseWhereThereAreNoData) {
   EXPECT_GT(over_hole, 0);
 }
 
+// A line whose hit ends at a fold has none: not_converged where there are data at its hit on the base, outside_data where there are not.
+TEST(Grid, TellsFoldsWithinTheDataFromFoldsBeyond) {
+  numerics::Arena arena;
+  const BicubicGrid grid = grid_on(sag_grid({17, 17, .25, .25}, [](double x, double y) { return of_waves(1.2, x, y); }), arena);
+  Uniform u(9);
+  int within = 0, beyond = 0, hits = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const V d = normalized(V{u(-1, 1), u(-1, 1), .5}), start = V{u(-4, 4), u(-4, 4), 0} - 3.0 * d;
+    const V base = grid.base.meet(start, d).point;
+    if (static_cast<const QuadricDeparture<BicubicGrid>&>(grid).meet(start, d).status == Status::ok) {
+      ++hits;
+      continue;
+    }
+    const bool is_within = grid.has_data(base.x, base.y);
+    EXPECT_EQ(grid.meet(start, d).status, is_within ? Status::not_converged : Status::outside_data);
+    ++(is_within ? within : beyond);
+  }
+  EXPECT_GT(within, 100);
+  EXPECT_GT(beyond, 100);
+  EXPECT_GT(hits, 1000);
+}
+
 // 1/12 f'''' h^2 is what one side is off by; on a node both sides count, unless there are data of one only.
 TEST(Grid, HasTheVertexCurvatureOfBothSidesOfANode) {
   numerics::Arena arena;
