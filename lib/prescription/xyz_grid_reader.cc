@@ -80,7 +80,8 @@ std::shared_ptr<SagGrid> read_xyz_grid(const GridRequest& request, CloudErrors& 
   for (const Point& point : points) {
     const std::size_t i = x.of(point.x), j = y.of(point.y);
     if (i == x.count || j == y.count) {
-      errors.add(errors.at(point.line), fmt::format("({:g}, {:g}) lies on no node of a grid of {} x {}", point.x, point.y, x.count, y.count), "delaunay takes points that lie anywhere");
+      errors.add(errors.at(point.line), fmt::format("({:g}, {:g}) lies on no node of a grid of {} x {}", point.x, point.y, x.count, y.count),
+                 "delaunay takes points that lie anywhere");
       continue;
     }
     std::uint32_t& line = lines[j * x.count + i];

@@ -86,7 +86,8 @@ class ZemaxGridReader {
   // False: what follows cannot be told.
   bool read_header() {
     if (fields_.size() != 7) {
-      errors_.add(errors_.at(lines_.number()), fmt::format("{} numbers where 7 are needed: {}", fields_.size(), quoted(lines_.line())), fmt::format("the first line is {}", header_form));
+      errors_.add(errors_.at(lines_.number()), fmt::format("{} numbers where 7 are needed: {}", fields_.size(), quoted(lines_.line())),
+                  fmt::format("the first line is {}", header_form));
       return false;
     }
     grid_->count_x = count(0, "nx"), grid_->count_y = count(1, "ny");
@@ -104,7 +105,8 @@ class ZemaxGridReader {
       return false;
     }
     if (fields_.size() != 1 && fields_.size() != 4 && fields_.size() != 5) {
-      errors_.add(errors_.at(lines_.number()), fmt::format("{} numbers where 1, 4 or 5 are needed: {}", fields_.size(), quoted(lines_.line())), "each node is z dz/dx dz/dy d2z/dxdy [nodata], or z alone");
+      errors_.add(errors_.at(lines_.number()), fmt::format("{} numbers where 1, 4 or 5 are needed: {}", fields_.size(), quoted(lines_.line())),
+                  "each node is z dz/dx dz/dy d2z/dxdy [nodata], or z alone");
       grid_->nodes.push_back({});
       return true;
     }

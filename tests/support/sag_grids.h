@@ -44,8 +44,9 @@ inline SagGrid::Node of_sphere(double radius, double x, double y) {
 }
 // Waves with a dimple, 0 at the origin.
 inline SagGrid::Node of_waves(double size, double x, double y) {
-  return {size * (std::cos(x) - 1) * std::cos(.7 * y) + size * .5 * std::sin(y), -size * std::sin(x) * std::cos(.7 * y), -.7 * size * (std::cos(x) - 1) * std::sin(.7 * y) + size * .5 * std::cos(y),
-          .7 * size * std::sin(x) * std::sin(.7 * y)};
+  const double dimple = size * (std::cos(x) - 1), dimple_x = -size * std::sin(x);
+  return {dimple * std::cos(.7 * y) + size * .5 * std::sin(y), dimple_x * std::cos(.7 * y), -.7 * dimple * std::sin(.7 * y) + size * .5 * std::cos(y),
+          -.7 * dimple_x * std::sin(.7 * y)};
 }
 
 inline surface::BicubicGrid grid_on(const SagGrid& grid, numerics::Arena& arena, const surface::Conic& base = {}) { return scene::grid_surface(grid, base, arena); }

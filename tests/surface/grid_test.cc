@@ -93,7 +93,8 @@ TEST(Grid, TakesAsManyHeightsAsThereAreBesideHoles) {
     EXPECT_TRUE(grid.has_data(-1.0, 0.0));
     const double x = given.first_x + 9.5 * .25;
     EXPECT_EQ(grid.has_data(x, .1), run > 1) << run;
-    for (int i = 9; i < 9 + run && run > 1; ++i) EXPECT_NEAR(grid.node(i + 1, 3)->x, .25 * given.nodes[static_cast<std::size_t>(2 * 16 + i)].dz_dx, 100 * eps) << run << " " << i;
+    for (int i = 9; i < 9 + run && run > 1; ++i)
+      EXPECT_NEAR(grid.node(i + 1, 3)->x, .25 * given.nodes[static_cast<std::size_t>(2 * 16 + i)].dz_dx, 100 * eps) << run << " " << i;
   }
 }
 
