@@ -35,6 +35,21 @@ class Random {
   std::mt19937_64 engine_{20240607};
 };
 
+// Waves of 5 um, on `count` x `count` nodes over twice the radius, without slopes.
+std::shared_ptr<const prescription::SagGrid> cornea_on_a_grid(int count, double data_radius) {
+  auto grid = std::make_shared<prescription::SagGrid>();
+  grid->count_x = grid->count_y = count;
+  grid->first_x = grid->first_y = -data_radius;
+  grid->spacing_x = grid->spacing_y = 2 * data_radius / (count - 1);
+  grid->has_given_slopes = false;
+  for (int j = 0; j < count; ++j)
+    for (int i = 0; i < count; ++i) {
+      const double x = grid->first_x + i * grid->spacing_x, y = grid->first_y + j * grid->spacing_y;
+      grid->nodes.push_back({0.005 * std::sin(x) * std::cos(0.8 * y), 0, 0, 0});
+    }
+  return grid;
+}
+
 prescription::Shape shape_of(const std::string& kind, int point_count, double data_radius) {
   prescription::Shape shape;
   shape.kind = point_count > 0 ? "delaunay" : kind;
@@ -53,6 +68,7 @@ prescription::Shape shape_of(const std::string& kind, int point_count, double da
     const int order = numerics::osa_term(index).n;
     given.indexed["coefficients_um"].push_back({index, order < 2 ? 0 : (index % 2 == 0 ? 1 : -1) * 2.0 / std::pow(order, 3)});
   }
+  if (kind == "grid") shape.grid = cornea_on_a_grid(201, data_radius);
   if (point_count == 0) return shape;
   auto cloud = std::make_shared<prescription::PointCloud>();
   Random random;

@@ -43,6 +43,7 @@ std::string basis_of(const StudyFile& study) {
   for (const auto& surface : system.surfaces) {
     if (surface.medium) basis += fmt::format("{} ", surface.medium->index(system.primary_wavelength_nm() / 1000));
     if (surface.shape.cloud) basis += file_text(surface.shape.cloud->file);
+    if (surface.shape.grid) basis += file_text(surface.shape.grid->file);
   }
   return hash_of(basis);
 }

@@ -128,19 +128,21 @@ inline constexpr std::array surface_keys{
 
 inline constexpr numerics::Range index_range{.low = medium::least_index, .high = medium::largest_index, .reason = "beyond, directions lose their digits from one medium to the next"};
 
-// Either index, or nd with vd, or grin.
+// Beside an index: how it changes with the wavelength. Both or none.
+inline constexpr numerics::Key dispersion_key{.name = "dispersion",
+                                              .kind = numerics::ValueKind::medium,
+                                              .meaning = "a medium with whose index this one rises and falls; unless given it is the same at every wavelength"};
+inline constexpr numerics::Key reference_key{.name = "reference_nm", .meaning = "the wavelength of the index", .range = wavelengths_nm_range};
+
+// Either index, alone or with dispersion and reference_nm, or nd with vd, or grin.
 inline constexpr std::array medium_keys{
     numerics::Key{.name = "grin", .kind = numerics::ValueKind::mapping, .meaning = "a gradient-index medium, by one of its forms"},
-    numerics::Key{.name = "index", .meaning = "refractive index at every wavelength", .range = index_range},
+    numerics::Key{.name = "index", .meaning = "refractive index, at every wavelength or at reference_nm", .range = index_range},
     numerics::Key{.name = "nd", .meaning = "refractive index at 587.5618 nm", .range = index_range},
-    numerics::Key{.name = "vd", .meaning = "Abbe number", .range = numerics::positive}};
+    numerics::Key{.name = "vd", .meaning = "Abbe number", .range = numerics::positive}, dispersion_key, reference_key};
 
-// Beside one form of lib/gradient_index/forms.h: how the index of that changes with the wavelength. Both or none.
-inline constexpr std::array gradient_keys{
-    numerics::Key{.name = "dispersion",
-                  .kind = numerics::ValueKind::medium,
-                  .meaning = "a medium with whose index that of the form rises and falls; unless given it is the same at every wavelength"},
-    numerics::Key{.name = "reference_nm", .meaning = "the wavelength of the form's index", .range = wavelengths_nm_range}};
+// Beside one form of lib/gradient_index/forms.h, whose index it is.
+inline constexpr std::array gradient_keys{dispersion_key, reference_key};
 
 // The shapes of lib/surface/shapes.h, the gradients of lib/gradient_index/forms.h.
 struct ShapeKind {

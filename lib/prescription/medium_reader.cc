@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "lib/medium/shifted.h"
 #include "lib/prescription/keys.h"
 #include "lib/prescription/material_search.h"
 #include "lib/prescription/search_path.h"
@@ -22,7 +23,7 @@ MediumReader::Read MediumReader::read(const YamlNode* node) {
     if (node->entries.size() > 1) findings_.error(node->place, "medium must have nothing beside 'grin'", "dispersion and reference_nm stand inside it");
     return read_gradient(*grin);
   }
-  uses_.push_back({node->kind == YamlNode::Kind::mapping ? read_inline(*node) : read_name(*node), node->place});
+  uses_.push_back({read_one(*node), node->place});
   return {uses_.back().medium};
 }
 
@@ -39,6 +40,8 @@ void MediumReader::read_catalogs(const YamlNode* node) {
     if (findings_.all().size() > told_before) findings_.note(item->place, "named here");
   }
 }
+
+medium::Medium MediumReader::read_one(const YamlNode& node) { return node.kind == YamlNode::Kind::mapping ? read_inline(node) : read_name(node); }
 
 medium::Medium MediumReader::read_name(const YamlNode& node) {
   if (node.kind != YamlNode::Kind::scalar || node.text.empty()) {
@@ -71,6 +74,9 @@ medium::Medium MediumReader::read_inline(const YamlNode& node) {
   const bool has_index = section.find("index"), has_nd = section.find("nd"), has_vd = section.find("vd");
   if (has_index ? has_nd || has_vd : !(has_nd && has_vd))
     findings_.error(node.place, "medium must have either 'index', or both 'nd' and 'vd', or 'grin'");
+  const auto disperses_as = read_dispersion(node, section, "medium");
+  if (section.find("dispersion") && !has_index) findings_.error(node.place, "medium must have 'index' beside 'dispersion'");
+  if (index && disperses_as) return medium::shifted(disperses_as->medium, *index, disperses_as->reference_nm / 1000);
   if (index) return medium::constant(fmt::format("index {}", *index), *index);
   return nd && vd ? medium::from_nd_vd(*nd, *vd) : medium::air();
 }
@@ -89,17 +95,30 @@ MediumReader::Read MediumReader::read_gradient(const YamlNode& node) {
     result.gradient->kind = kind.name;
     result.gradient->parameters = read_parameters(Section(*form->value, form->key, kind.keys, findings_), kind.keys);
   }
+  if (auto disperses_as = read_dispersion(node, section, "grin")) {
+    uses_.push_back({disperses_as->medium, section.find("dispersion")->place});
+    result.gradient->reference_nm = disperses_as->reference_nm;
+    result.medium = std::move(disperses_as->medium);
+  }
+  return result;
+}
+
+std::optional<MediumReader::DispersesAs> MediumReader::read_dispersion(const YamlNode& node, const Section& section, std::string_view name) {
   const YamlNode *dispersion = section.find("dispersion"), *reference = section.find("reference_nm");
   if (!dispersion != !reference)
-    findings_.error(node.place, "grin must have both 'dispersion' and 'reference_nm', or neither", "the form's index is that at reference_nm");
-  result.gradient->reference_nm = section.number("reference_nm").value_or(0);
-  if (!dispersion) return result;
-  const Read disperses_as = read(dispersion);
-  if (disperses_as.is_mirror || disperses_as.gradient) refuse(*dispersion, "dispersion", "a medium of one index at each wavelength", findings_);
-  else if (const double um = result.gradient->reference_nm / 1000; um > 0 && !(disperses_as.medium.index(um) > 0))
-    findings_.error(reference->place, fmt::format("{} has no index at reference_nm, {} nm", disperses_as.medium.name, result.gradient->reference_nm));
-  result.medium = disperses_as.medium;
-  return result;
+    findings_.error(node.place, fmt::format("{} must have both 'dispersion' and 'reference_nm', or neither", name), "the index is that at reference_nm");
+  const auto reference_nm = section.number("reference_nm");
+  if (!dispersion) return std::nullopt;
+  const bool is_mirror = dispersion->kind == YamlNode::Kind::scalar && dispersion->text == "mirror", is_gradient = dispersion->kind == YamlNode::Kind::mapping && dispersion->find("grin");
+  if (is_mirror || is_gradient) {
+    refuse(*dispersion, "dispersion", "a medium of one index at each wavelength", findings_);
+    return std::nullopt;
+  }
+  DispersesAs result{read_one(*dispersion), reference_nm.value_or(0)};
+  if (reference_nm && result.medium.index(*reference_nm / 1000) > 0) return result;
+  if (reference_nm) findings_.error(reference->place, fmt::format("{} has no index at reference_nm, {} nm", result.medium.name, *reference_nm));
+  uses_.push_back({std::move(result.medium), dispersion->place});
+  return std::nullopt;
 }
 
 }  // namespace sagitta::prescription

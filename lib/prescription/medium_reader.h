@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "lib/medium/medium.h"
@@ -15,6 +16,8 @@
 #include "lib/prescription/yaml_tree.h"
 
 namespace sagitta::prescription {
+
+class Section;
 
 class MediumReader {
  public:
@@ -35,9 +38,17 @@ class MediumReader {
   const std::vector<MediumUse>& uses() const { return uses_; }
 
  private:
+  // Media that may be used, or that others disperse as.
+  medium::Medium read_one(const YamlNode& node);
   medium::Medium read_name(const YamlNode& node);
   medium::Medium read_inline(const YamlNode& node);
   Read read_gradient(const YamlNode& node);
+  // dispersion with reference_nm; none where they are not given, or at fault.
+  struct DispersesAs {
+    medium::Medium medium;
+    double reference_nm;
+  };
+  std::optional<DispersesAs> read_dispersion(const YamlNode& node, const Section& section, std::string_view name);
 
   Findings& findings_;
   std::vector<AgfCatalog> catalogs_;

@@ -16,6 +16,7 @@
 #include "lib/prescription/expression.h"
 #include "lib/prescription/parameters.h"
 #include "lib/prescription/point_cloud.h"
+#include "lib/prescription/sag_grid.h"
 
 namespace sagitta::prescription {
 
@@ -46,6 +47,7 @@ struct Shape {
   std::string kind = "plane";
   Parameters parameters;
   std::shared_ptr<const PointCloud> cloud;  // for shapes made of points
+  std::shared_ptr<const SagGrid> grid = nullptr;  // for those made of heights on a grid
   Place place;
 };
 

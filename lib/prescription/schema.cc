@@ -64,6 +64,7 @@ ordered_json with_one_of(ordered_json json, KeyTable alternatives) {
 ordered_json medium_schema() {
   ordered_json described = mapping(medium_keys);
   described["oneOf"] = {required("index"), {{"required", {"nd", "vd"}}}, required("grin")};
+  described["dependencies"] = {{"dispersion", {"reference_nm", "index"}}, {"reference_nm", {"dispersion"}}};
   return {{"anyOf", {{{"type", "string"}, {"description", "name of a file of materials/ or beside the prescription, air, or mirror"}, {"examples", {"air", "mirror"}}}, described}}};
 }
 

@@ -6,8 +6,10 @@
 #include <algorithm>
 
 #include "lib/prescription/cloud_reader.h"
+#include "lib/prescription/grid_reader.h"
 #include "lib/prescription/search_path.h"
 #include "lib/prescription/value_reader.h"
+#include "lib/surface/grid.h"
 
 namespace sagitta::prescription {
 namespace {
@@ -66,8 +68,27 @@ void read_value(const Section& section, const Key& key, Parameters& parameters) 
   }
 }
 
+// What the file holds that a shape names, by read(file); null, with errors, where it cannot be read.
+template <class Data, class Read>
+std::shared_ptr<const Data> read_once(const std::string& name, const std::string& format, bool osa_axes, const Place& place, KnownFilesOf<Data>& known_files, Findings& findings,
+                                      const Read& read) {
+  const auto file = find_named_file(name, place, findings);
+  if (!file) return nullptr;
+  const auto [known, is_new] = known_files.try_emplace({*file, format, osa_axes}, KnownFile<Data>{nullptr, place});
+  auto& [data, named_at] = known->second;
+  if (is_new) {
+    const std::size_t finding_count = findings.all().size();
+    data = read(*file);
+    if (findings.all().size() > finding_count) findings.note(place, "named here");
+  } else if (!data) {
+    const bool is_here = named_at.file == place.file;
+    findings.error(place, fmt::format("'{}' cannot be read", excerpt(name)), fmt::format("see {}line {}", is_here ? "" : named_at.file + ", ", named_at.line));
+  }
+  return data;
+}
+
 // The points of the file that `key` names; null, with errors, where there are none.
-std::shared_ptr<const PointCloud> read_points(const std::string& key, const Parameters& parameters, KnownClouds& clouds, Findings& findings) {
+std::shared_ptr<const PointCloud> read_points(const std::string& key, const Parameters& parameters, KnownFiles& known, Findings& findings) {
   const auto name = parameters.texts.find(key);
   const auto format = parameters.texts.find("format"), axes = parameters.texts.find("axes");
   if (name == parameters.texts.end() || format == parameters.texts.end() || axes == parameters.texts.end())
@@ -80,19 +101,15 @@ std::shared_ptr<const PointCloud> read_points(const std::string& key, const Para
                    "the format itself tells its axes");
     return nullptr;
   }
-  const auto file = find_named_file(name->second, place, findings);
-  if (!file) return nullptr;
-  const auto [known, is_new] = clouds.try_emplace({*file, format->second, osa_axes}, KnownCloud{nullptr, place});
-  auto& [cloud, named_at] = known->second;
-  if (is_new) {
-    const std::size_t finding_count = findings.all().size();
-    cloud = read_cloud({*file, format->second, osa_axes}, findings);
-    if (findings.all().size() > finding_count) findings.note(place, "named here");
-  } else if (!cloud) {
-    const bool is_here = named_at.file == place.file;
-    findings.error(place, fmt::format("'{}' cannot be read", excerpt(name->second)), fmt::format("see {}line {}", is_here ? "" : named_at.file + ", ", named_at.line));
-  }
-  return cloud;
+  return read_once(name->second, format->second, osa_axes, place, known.clouds, findings,
+                   [&](const std::string& file) { return read_cloud({file, format->second, osa_axes}, findings); });
+}
+
+std::shared_ptr<const SagGrid> read_grid_of(const std::string& key, const Parameters& parameters, KnownFiles& known, Findings& findings) {
+  const auto name = parameters.texts.find(key), format = parameters.texts.find("format");
+  if (name == parameters.texts.end() || format == parameters.texts.end()) return nullptr;
+  return read_once(name->second, format->second, false, parameters.places.find(key)->second, known.grids, findings,
+                   [&](const std::string& file) { return read_grid({file, format->second}, findings); });
 }
 
 }  // namespace
@@ -103,12 +120,14 @@ Parameters read_parameters(const Section& section, KeyTable keys) {
   return parameters;
 }
 
-Shape read_shape(const ShapeKind& kind, const YamlNode& node, KnownClouds& clouds, Findings& findings) {
+Shape read_shape(const ShapeKind& kind, const YamlNode& node, KnownFiles& known, Findings& findings) {
   const Section section(node, std::string(kind.name), kind.keys, findings);
   Shape shape{.kind = std::string(kind.name), .parameters = read_parameters(section, kind.keys), .cloud = nullptr, .place = node.place};
-  for (const Key& key : kind.keys)
-    if (key.kind == ValueKind::file)
-      shape.cloud = read_points(std::string(key.name), shape.parameters, clouds, findings);
+  for (const Key& key : kind.keys) {
+    if (key.kind != ValueKind::file) continue;
+    if (kind.name == surface::BicubicGrid::kind) shape.grid = read_grid_of(std::string(key.name), shape.parameters, known, findings);
+    else shape.cloud = read_points(std::string(key.name), shape.parameters, known, findings);
+  }
   return shape;
 }
 
@@ -125,8 +144,8 @@ Shape make_shape(std::string_view kind, const std::vector<std::pair<std::string,
     node.entries.push_back({key, place, std::move(value)});
   }
   const auto found = std::find_if(shape_kinds().begin(), shape_kinds().end(), [&](const ShapeKind& one) { return one.name == kind; });
-  KnownClouds clouds;
-  return read_shape(*found, node, clouds, findings);
+  KnownFiles known;
+  return read_shape(*found, node, known, findings);
 }
 
 }  // namespace sagitta::prescription

@@ -17,19 +17,25 @@
 
 namespace sagitta::prescription {
 
-// Clouds by file, format and axes: a file is read once, however many surfaces name it, and faults in it are told once.
-struct KnownCloud {
-  std::shared_ptr<const PointCloud> cloud;  // null: it could not be read
-  Place named_at;                           // for the first time
+// What files hold, by file, format and axes: a file is read once, however many surfaces name it, and faults in it are told once.
+template <class Data>
+struct KnownFile {
+  std::shared_ptr<const Data> data;  // null: it could not be read
+  Place named_at;                    // for the first time
 };
-using KnownClouds = std::map<std::tuple<std::string, std::string, bool>, KnownCloud>;
+template <class Data>
+using KnownFilesOf = std::map<std::tuple<std::string, std::string, bool>, KnownFile<Data>>;
+struct KnownFiles {
+  KnownFilesOf<PointCloud> clouds;
+  KnownFilesOf<SagGrid> grids;
+};
 
 // The values of a mapping, after its table of keys.
 class Section;
 Parameters read_parameters(const Section& section, KeyTable keys);
 
 // A file that the shape names is looked for first beside the file in which the name stands.
-Shape read_shape(const ShapeKind& kind, const YamlNode& node, KnownClouds& clouds, Findings& findings);
+Shape read_shape(const ShapeKind& kind, const YamlNode& node, KnownFiles& known, Findings& findings);
 
 // A shape that is asked for outside a prescription, by keys and texts: as if it stood at `place` in one.
 Shape make_shape(std::string_view kind, const std::vector<std::pair<std::string, std::string>>& values, const Place& place,

@@ -41,12 +41,12 @@ Vec3<double> read_vector(const Section& section, std::string_view key, Findings&
   return xyz ? Vec3<double>{(*xyz)[0], (*xyz)[1], (*xyz)[2]} : Vec3<double>{};
 }
 
-Shape read_shape_of(const Section& section, KnownClouds& clouds, Findings& findings) {
+Shape read_shape_of(const Section& section, KnownFiles& known, Findings& findings) {
   const YamlNode::Entry* given = section.one_of(shape_names(), false);
   if (!given) return {.kind = "plane", .parameters = {}, .cloud = nullptr, .place = section.place()};
   const auto kind = std::find_if(shape_kinds().begin(), shape_kinds().end(),
                                  [&](const ShapeKind& one) { return one.name == given->key; });
-  return read_shape(*kind, *given->value, clouds, findings);
+  return read_shape(*kind, *given->value, known, findings);
 }
 
 void check_thickness(const Section& section, const Surface& surface, bool is_last, Findings& findings) {
@@ -61,11 +61,11 @@ void check_thickness(const Section& section, const Surface& surface, bool is_las
         "the last surface is the image surface: nothing follows it");
 }
 
-Surface read_surface(const Section& section, bool is_last, MediumReader& media, KnownClouds& clouds, Findings& findings) {
+Surface read_surface(const Section& section, bool is_last, MediumReader& media, KnownFiles& known, Findings& findings) {
   Surface surface;
   surface.place = section.place();
   surface.name = section.text("name").value_or("");
-  surface.shape = read_shape_of(section, clouds, findings);
+  surface.shape = read_shape_of(section, known, findings);
   surface.stop = section.flag("stop").value_or(false);
   surface.thickness_mm = section.number("thickness_mm").value_or(0);
   check_thickness(section, surface, is_last, findings);
@@ -107,7 +107,7 @@ std::vector<Surface> read_surfaces(const YamlNode& list, MediumReader& media, Fi
     Place place;
   };
   std::vector<Stop> stops;
-  KnownClouds clouds;
+  KnownFiles known;
   bool all_stops_known = true;
   for (std::size_t number = 1; number <= list.items.size(); ++number) {
     const YamlNode& node = *list.items[number - 1];
@@ -116,7 +116,7 @@ std::vector<Surface> read_surfaces(const YamlNode& list, MediumReader& media, Fi
     all_stops_known = all_stops_known && node.kind == YamlNode::Kind::mapping &&
                       (!stop || stop->text == "true" || stop->text == "false");
     if (node.kind != YamlNode::Kind::mapping) continue;
-    surfaces.push_back(read_surface(section, number == list.items.size(), media, clouds, findings));
+    surfaces.push_back(read_surface(section, number == list.items.size(), media, known, findings));
     if (surfaces.back().stop) stops.push_back({number, stop->place});
   }
   if (stops.empty() && all_stops_known)

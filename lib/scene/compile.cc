@@ -10,6 +10,7 @@
 #include "lib/scene/cloud_fit.h"
 #include "lib/scene/compile_cloud.h"
 #include "lib/scene/compile_gradient.h"
+#include "lib/scene/compile_grid.h"
 #include "lib/scene/triangulate.h"
 
 namespace sagitta::scene {
@@ -143,13 +144,15 @@ void set_vertex_curvatures(const Model& model, const Clouds& clouds, Scene& scen
   set([&](int number) { return marginal_height(before, before.primary, paraxial.entrance_pupil, number); });
 }
 
-// Where a cloud says nothing of its vertex. (Of clouds that wait for the beam, what their points span.)
+// Where a cloud or a grid says nothing of its vertex. (Of clouds that wait for the beam, what their points span.)
 void tell_of_vertices_without_points(const Model& model, const std::vector<int>& waiting, Scene& scene, Findings& findings) {
   for (std::size_t i = 0; i < scene.surfaces.size(); ++i) {
     const prescription::Shape& given = model.surfaces[i].shape;
-    if (!given.cloud) continue;
+    if (!given.cloud && !given.grid) continue;
     const bool is_waiting = std::find(waiting.begin(), waiting.end(), static_cast<int>(i) + 1) != waiting.end();
-    if (is_waiting ? extent_of(*given.cloud).places.contains(0, 0) : facets_of(scene.surfaces[i].shape)->covers(0, 0)) continue;
+    const bool is_known = given.grid ? std::get<surface::BicubicGrid>(scene.surfaces[i].shape).has_data(0.0, 0.0)
+                          : is_waiting ? extent_of(*given.cloud).places.contains(0, 0) : facets_of(scene.surfaces[i].shape)->covers(0, 0);
+    if (is_known) continue;
     findings.note(given.place, "(0, 0) is in a hole or beyond the points: focal lengths and pupils rest on a vertex extrapolated from them");
   }
 }
@@ -203,6 +206,8 @@ CompileResult compile_for(const Model& model, const Beam& beam) {
       surface.shape = compiled.shape;
       clouds[i] = compiled.cloud;
       if (compiled.smoothing) result.smoothing[number] = *compiled.smoothing;
+    } else if (given.shape.grid) {
+      surface.shape = compile_grid(given.shape, scene.arena);
     } else {
       const surface::Shape prescribed = compile_shape(given.shape, scene.arena);
       surface.shape = surface::least_form(prescribed);

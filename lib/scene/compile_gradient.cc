@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "lib/gradient_index/paraxial.h"
+#include "lib/medium/shifted.h"
 
 namespace sagitta::scene {
 namespace {
@@ -19,7 +20,7 @@ gradient_index::Form form_of(const prescription::Surface& given, double waveleng
     if (Form::kind == given.gradient->kind) result = Form::from(given.gradient->parameters, arena);
   });
   if (const double nm = given.gradient->reference_nm; nm > 0)
-    std::visit([&](auto& form) { form.index += given.medium->index(wavelength_um) - given.medium->index(nm / 1000); }, result);
+    std::visit([&](auto& form) { form.index = medium::shifted(*given.medium, form.index, nm / 1000).index(wavelength_um); }, result);
   return result;
 }
 

@@ -148,7 +148,8 @@ HeightRounding height_rounding(const Shape& shape, const Place& at) {
 template <class Shape>
   requires DepartsFromConic<Shape> || DepartsFromQuadric<Shape>
 Met met(const Shape& shape, const Place& at, const Vec3<Exact>& hit) {
-  return met_height(shape, height_rounding(shape, at), 4, hit, at);
+  constexpr int directions = std::is_same_v<Shape, surface::BicubicGrid> ? 8 : 4;  // its second derivatives jump
+  return met_height(shape, height_rounding(shape, at), directions, hit, at);
 }
 
 HeightRounding facet_rounding(const surface::Facets& facets, const Place& at) {

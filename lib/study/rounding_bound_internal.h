@@ -20,7 +20,7 @@
 //   plane     2 u |t| of the path
 //   Zernike   2 eps (|z| + |p| + V), where the iteration ends, and what the sum is off by:  2 (N + 3) u sum |c_ij X^i Y^j| of a polynomial,
 //             8 (N + 1) u V of the recurrence, V = sum |C_j N_j| T_n(max(1, rho)) (surface/zernike.h, (4))
-//   sums of powers likewise, with 4 (N + 3) u of the terms' sizes; biconic, toroid   2 eps (|z| + its terms) and surface/'s rounding()
+//   sums of powers likewise, with 4 (N + 3) u of the terms' sizes; biconic, toroid, grid   2 eps (|z| + its terms) and surface/'s rounding()
 //   points    8 u of the coordinates, 64 u of the largest coefficient of a patch, (nodes + 16) u of the terms of a radial interpolant; what a step over an edge
 //             within `hit` changes
 //

@@ -16,6 +16,11 @@
 
 namespace sagitta::surface {
 
+// The rounding of a height and of its slopes, at most.
+struct SagRounding {
+  double height = 0, slope = 0;
+};
+
 struct Quadric {
   double curvature_x = 0, curvature_y = 0;
   double axial = 0;  // m
@@ -40,6 +45,13 @@ struct Quadric {
     using std::sqrt;
     const T root = sqrt(T(1) - T(axial) * (T(curvature_x) * x * x + T(curvature_y) * y * y));
     return {T(curvature_x) * x / root, T(curvature_y) * y / root};
+  }
+  // Of N 3 roundings of its terms' sizes, of 1 - m N one more and its own.
+  SagRounding rounding(double x, double y) const {
+    const double u = std::numeric_limits<double>::epsilon() / 2, N = std::abs(curvature_x) * x * x + std::abs(curvature_y) * y * y;
+    const double s = std::sqrt(1 - axial * (curvature_x * x * x + curvature_y * y * y)), of_s = (3 * std::abs(axial) * N + 1) * u / s + u * s, z = N / (1 + s);
+    const auto slope = [&](double c, double at) { return std::abs(c * at) / s * (3 * u + of_s / s); };
+    return {z * (6 * u + of_s / (1 + s)), slope(curvature_x, x) + slope(curvature_y, y)};
   }
   // Of the second derivative along the line up to a distance h to either side: with s = sqrt(1 - m N), z'' = N''/(2 s) + m N'^2/(4 s^3).
   template <class T>
@@ -109,11 +121,6 @@ struct QuadricDeparture {
     }
     return first_crossing(self(), start, d);
   }
-};
-
-// The rounding of a height and of its slopes, at most.
-struct SagRounding {
-  double height = 0, slope = 0;
 };
 
 }  // namespace sagitta::surface

@@ -12,6 +12,7 @@
 #include "lib/surface/biconic.h"
 #include "lib/surface/conic.h"
 #include "lib/surface/facets.h"
+#include "lib/surface/grid.h"
 #include "lib/surface/patches.h"
 #include "lib/surface/plane.h"
 #include "lib/surface/radial.h"
@@ -22,7 +23,7 @@
 
 namespace sagitta::surface {
 
-using Shape = std::variant<Plane, Sphere, Conic, Asphere, Biconic, Toroid, XyPolynomial, Zernike, Facets, Patches, RadialPatches<RadialFunction::cubic>,
+using Shape = std::variant<Plane, Sphere, Conic, Asphere, Biconic, Toroid, XyPolynomial, Zernike, BicubicGrid, Facets, Patches, RadialPatches<RadialFunction::cubic>,
                            RadialPatches<RadialFunction::thin_plate>, RadialPatches<RadialFunction::multiquadric>>;
 
 // Shapes that are met in lanes, by a formula.

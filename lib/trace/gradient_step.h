@@ -5,7 +5,7 @@
 // Indices that agree to within the rounding of the gradient's formula are the same: where a gradient ends with the index of what is around it, nothing is refracted,
 // at grazing incidence too.
 //
-// Besides the endings of a shape: not_converged where the ray comes out in a medium that has no index there; those of travel.h.
+// Besides the endings of a shape those of travel.h; and missed where the ray comes to a medium that has no index there, as where it leaves one.
 #pragma once
 
 #include <optional>
@@ -104,7 +104,7 @@ GradientStep<T> step_in_gradient(const scene::Surface& surface, int number, cons
   if (result.crossing.status == Status::ok && behind && passes) {
     result.index_behind = index_in(*behind, result.crossing.point);
     const double n = static_cast<double>(result.index_behind);
-    if (!(n * n >= gradient_index::least_squared_index && n * n <= gradient_index::largest_squared_index)) result.crossing = surface::no_crossing<T>(Status::not_converged);
+    if (!(n * n >= gradient_index::least_squared_index && n * n <= gradient_index::largest_squared_index)) result.crossing = surface::no_crossing<T>(Status::missed);
   }
   if (!passes) result.index_behind = result.index_before;
   const T least_step = T(8) * std::numeric_limits<T>::epsilon() * result.index_before;

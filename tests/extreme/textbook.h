@@ -192,7 +192,13 @@ TextbookHit<T> textbook_meet(const surface::Shape& shape, const prescription::Sh
     else if constexpr (std::is_same_v<S, surface::Sphere>) return textbook_meet(TextbookConic<T>{T(of.curvature), T(1)}, p, d);
     else if constexpr (std::is_same_v<S, surface::Conic>) return textbook_meet(TextbookConic<T>{T(of.curvature), T(1) + T(of.conic_constant)}, p, d);
     else if constexpr (std::is_same_v<S, surface::Facets>) return textbook_facets(*of.mesh, p, d);
-    else if constexpr (surface::is_analytic<S>) return TextbookDeparture<T>{{given}}.meet(p, d);
+    else if constexpr (surface::is_analytic<S>) {
+      const TextbookDeparture<T> departure{{given}};
+      const TextbookHit<T> hit = departure.meet(p, d);
+      if (!given.grid || hit.status == Status::missed) return hit;
+      const Vec3<T> decides = hit.status == Status::ok ? hit.point : textbook_meet(departure.surface.base(), p, d).point;  // a ray that has none by where the base has its
+      return departure.surface.has_data(decides.x, decides.y) ? hit : TextbookHit<T>{Status::outside_data};
+    }
     else return {Status::not_converged};
   }, shape);
 }

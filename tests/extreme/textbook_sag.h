@@ -6,26 +6,20 @@
 //   xy_polynomial   sum of C_j X^i Y^k                                                                                        (3)
 //   biconic         (c_x x^2 + c_y y^2)/(1 + sqrt(1 - (1+K_x) c_x^2 x^2 - (1+K_y) c_y^2 y^2))                                   (4)
 //   toroid          R -+ sqrt((R - g(y))^2 - x^2), g = conic + sum of a_k y^k                                                   (5)
+//   grid            textbook_grid.h                                                                                            (6)
 // The base: the conic; of the last two the quadric of the same vertex curvatures (lib/surface/quadric.h says which of them). Curvatures are the doubles next to
 // 1/radius, as everywhere.
 #pragma once
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "lib/numerics/zernike_basis.h"
 #include "lib/prescription/model.h"
+#include "tests/extreme/textbook_grid.h"
 
 namespace sagitta::test {
-
-template <class T>
-struct HeightAndSlopes {
-  T z, dz_dx, dz_dy;
-
-  friend HeightAndSlopes operator+(const HeightAndSlopes& a, const HeightAndSlopes& b) { return {a.z + b.z, a.dz_dx + b.dz_dx, a.dz_dy + b.dz_dy}; }
-  friend HeightAndSlopes operator-(const HeightAndSlopes& a, const HeightAndSlopes& b) { return {a.z - b.z, a.dz_dx - b.dz_dx, a.dz_dy - b.dz_dy}; }
-  friend HeightAndSlopes operator*(const T& size, const HeightAndSlopes& of) { return {size * of.z, size * of.dz_dx, size * of.dz_dy}; }
-};
 
 template <class T>
 T textbook_power(const T& of, int exponent) {
@@ -98,10 +92,13 @@ class TextbookSag {
       if (given.kind == "zernike") height_ = &TextbookSag::zernike;
       if (given.kind == "asphere") height_ = &TextbookSag::asphere;
       if (given.kind == "xy_polynomial") height_ = &TextbookSag::xy_polynomial;
+      if (given.kind == "grid") grid_.emplace(*given.grid), height_ = &TextbookSag::grid;
     }
   }
 
   HeightAndSlopes<T> height(const T& x, const T& y) const { return (this->*height_)(x, y); }
+  // Where there is none, there is no hit.
+  bool has_data(const T& x, const T& y) const { return !grid_ || grid_->has_data(x, y); }
   // Of two sections the quadric that reaches out as far as both: the smaller |m|; that of the one which is not straight; none of a saddle.
   TextbookQuadric<T> base() const {
     using std::abs;
@@ -141,6 +138,7 @@ class TextbookSag {
     }
     return sum;
   }
+  HeightAndSlopes<T> grid(const T& x, const T& y) const { return y_.height(x, y) + grid_->height(x, y); }  // (6)
   HeightAndSlopes<T> xy_polynomial(const T& x, const T& y) const {  // (3)
     const T r0(given_.number("normalization_radius_mm")), X = x / r0, Y = y / r0;
     HeightAndSlopes<T> sum = y_.height(x, y);
@@ -175,6 +173,7 @@ class TextbookSag {
   }
 
   const prescription::Parameters& given_;
+  std::optional<TextbookGrid<T>> grid_;
   TextbookConic<T> x_{}, y_{};  // the sections, or twice the base conic
   HeightAndSlopes<T> (TextbookSag::*height_)(const T&, const T&) const = nullptr;
 };

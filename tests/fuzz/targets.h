@@ -16,6 +16,7 @@
 #include "lib/analysis/job.h"
 #include "lib/prescription/agf_reader.h"
 #include "lib/prescription/cloud_reader.h"
+#include "lib/prescription/grid_reader.h"
 #include "lib/prescription/material_reader.h"
 #include "lib/prescription/reader.h"
 #include "lib/prescription/study_reader.h"
@@ -39,6 +40,9 @@ inline void put_named_files(const Folder& folder) {
       radii += fmt::format("{}\n", r);
       heights += fmt::format("{:.0f},{:06.0f}\n", std::floor(z), 1e6 * (z - std::floor(z)));
     }
+  std::string grid = "5 5 1.0 1.0 0 0 0\n";
+  for (int k = 0; k < 25; ++k) grid += fmt::format("{}\n", 8 - std::sqrt(64 - (k % 5 - 2) * (k % 5 - 2) - (k / 5 - 2) * (k / 5 - 2)));
+  folder.write("points.dat", grid);
   folder.write("points.xyz", xyz);
   folder.write("points.polar", polar);
   folder.write("points.cso", "Dato misurato : Elevazioni\nAnelli : 4\nSemimeridiani : 6\n---\n" + radii + heights);
@@ -75,6 +79,15 @@ inline std::string wrong_with(const prescription::PointCloud& cloud) {
   return {};
 }
 
+inline std::string wrong_with(const prescription::SagGrid& grid) {
+  if (grid.count_x < 5 || grid.count_y < 5 || grid.nodes.size() != static_cast<std::size_t>(grid.count_x) * static_cast<std::size_t>(grid.count_y)) return "a grid of other nodes than it has";
+  if (!(grid.spacing_x > 0 && grid.spacing_y > 0 && std::isfinite(grid.spacing_x) && std::isfinite(grid.spacing_y) && std::isfinite(grid.first_x) && std::isfinite(grid.first_y)))
+    return "a grid nowhere";
+  for (const auto& node : grid.nodes)
+    if (std::isinf(node.z) || !std::isfinite(node.dz_dx) || !std::isfinite(node.dz_dy) || !std::isfinite(node.d2z_dxdy)) return "a node with numbers that are none";
+  return {};
+}
+
 inline std::string wrong_with(const prescription::Model& model) {
   if (model.surfaces.empty() || model.wavelengths_nm.empty() || model.fields.points.empty()) return "a model without surfaces, wavelengths or fields";
   const auto index_is_good = [&](const medium::Medium& medium) {
@@ -86,6 +99,8 @@ inline std::string wrong_with(const prescription::Model& model) {
     if (!std::isfinite(surface.thickness_mm) || !all_finite(surface.decenter_mm) || !all_finite(surface.tilt_deg)) return "a surface nowhere";
     if (surface.shape.cloud)
       if (const std::string wrong = wrong_with(*surface.shape.cloud); !wrong.empty()) return wrong;
+    if (surface.shape.grid)
+      if (const std::string wrong = wrong_with(*surface.shape.grid); !wrong.empty()) return wrong;
   }
   return {};
 }
@@ -147,6 +162,18 @@ std::string fuzz_cloud(const Folder& folder, std::string_view bytes) {
   return wrong.empty() && cloud ? wrong_with(*cloud) : wrong;
 }
 inline constexpr char xyz[] = "xyz", cso[] = "cso", polar[] = "polar", ply[] = "ply";
+
+// The same bytes in every format.
+inline std::string fuzz_grid(const Folder& folder, std::string_view bytes) {
+  const std::string file = folder.write("grid", std::string(bytes));
+  for (const char* format : {"zemax", "xyz"}) {
+    prescription::Findings findings;
+    const auto grid = prescription::read_grid({file, format}, findings);
+    if (const std::string wrong = wrong_with(findings, grid != nullptr); !wrong.empty()) return wrong;
+    if (const std::string wrong = grid ? wrong_with(*grid) : ""; !wrong.empty()) return wrong;
+  }
+  return {};
+}
 
 // Every ray ends with a status and with finite numbers, lost or not.
 inline std::string wrong_with(const trace::RayBatch& rays, int surface_count) {
@@ -215,7 +242,7 @@ inline std::string fuzz_compile(const Folder& folder, std::string_view bytes) {
   const auto read = prescription::read_prescription(folder.write("system.yaml", std::string(bytes.substr(0, end))));
   if (!read.model || read.model->surfaces.size() > 50) return {};
   for (const auto& surface : read.model->surfaces)
-    if (surface.shape.cloud && surface.shape.cloud->points.size() > 500) return {};
+    if ((surface.shape.cloud && surface.shape.cloud->points.size() > 500) || (surface.shape.grid && surface.shape.grid->nodes.size() > 5000)) return {};
   const scene::CompileResult whole = scene::compile(*read.model);
   if (const std::string wrong = wrong_with(in_order(whole.findings, read.model->documents), whole.scene.has_value()); !wrong.empty() || !whole.scene) return wrong;
   const bool has_clouds = std::any_of(read.model->surfaces.begin(), read.model->surfaces.end(), [](const auto& one) { return one.shape.cloud != nullptr; });
@@ -233,6 +260,6 @@ struct Target {
 };
 inline constexpr std::array targets{Target{"prescription", fuzz_prescription}, Target{"study", fuzz_study}, Target{"material", fuzz_material}, Target{"catalog", fuzz_catalog},
                                     Target{"xyz", fuzz_cloud<xyz>}, Target{"cso", fuzz_cloud<cso>}, Target{"polar", fuzz_cloud<polar>},
-                                    Target{"ply", fuzz_cloud<ply>}, Target{"compile", fuzz_compile}};
+                                    Target{"ply", fuzz_cloud<ply>}, Target{"grid", fuzz_grid}, Target{"compile", fuzz_compile}};
 
 }  // namespace sagitta::fuzz

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "lib/medium/formulas.h"
+#include "lib/medium/shifted.h"
 #include "lib/medium/table.h"
 
 namespace sagitta::medium {
@@ -49,6 +50,28 @@ TEST(Medium, ATwoTermCauchyIsLinearInTheInverseSquareOfTheWavelength) {
   const auto at = [&](double x) { return medium.index(1 / std::sqrt(x)); };
   // Differences of three indices of size 1.5, each with a few roundings.
   EXPECT_NEAR(at(2) - 2 * at(3) + at(4), 0, 4e-15);
+}
+
+// Of Herzberger's interpolation the same as the shift of all four nodes, to what the sum of its weights differs from 1 by (shifted.h).
+TEST(Medium, AShiftedOneRisesAndFallsAsTheOther) {
+  const auto lens = [](double more) {
+    return from_formula("lens", *find_formula("Navarro"), {1.4492 + more, 1.42625 + more, 1.4175 + more, 1.4097 + more}, 0.365, 1.014);
+  };
+  const Medium other = lens(0), medium = shifted(other, 1.43, 0.5893), by_nodes = lens(0.018);
+  EXPECT_EQ(medium.name, "index 1.43, dispersing as lens,");
+  EXPECT_EQ(medium.index(0.5893), 1.43);
+  for (const double um : {0.365, 0.4861, 0.6563, 1.014}) {
+    EXPECT_EQ(medium.index(um), 1.43 + (other.index(um) - other.index(0.5893)));
+    EXPECT_NEAR(shifted(other, other.index(0.5893) + 0.018, 0.5893).index(um), by_nodes.index(um), 0.018 * 2e-7);
+    EXPECT_NE(other.index(um), other.index(0.5893));
+  }
+  EXPECT_TRUE(std::isnan(medium.index(0.36)));
+  EXPECT_TRUE(std::isnan(medium.index(1.02)));
+  EXPECT_TRUE(std::isnan(shifted(from_nd_vd(1.5, 30), 0.005, 0.4).index(0.7)));  // below every index
+  EXPECT_FALSE(medium.dispersion->is_constant());
+  EXPECT_TRUE(shifted(constant("", 1.4), 1.5, 0.5).dispersion->is_constant());
+  EXPECT_TRUE(medium.dispersion->is_smooth());
+  EXPECT_FALSE(shifted(from_table("", {{0.4, 1.4}, {0.5, 1.3}, {0.6, 1.25}}), 1.5, 0.5).dispersion->is_smooth());
 }
 
 TEST(Medium, TheEndsOfTheRangeBelongToItAlsoWhenGivenInNanometres) {

@@ -134,7 +134,8 @@ TEST(Schema, TakesTheValuesThatTheReaderTakes) {
     if (level == "aperture") return system("aperture: {" + with + "}\n" + (with.starts_with("object_na") ? "object: {distance_mm: 100, medium: {index: 9}}\n" : ""), plane);
     if (level == "object") return system(pupil + "object: {" + with + "}\n", plane);
     if (level == "surface") return system(pupil, with);
-    if (level == "medium") return system(pupil, "medium: {" + with + (with.starts_with("nd") ? ", vd: 50" : with.starts_with("vd") ? ", nd: 1.5" : "") + "}");
+    if (level == "medium") return system(pupil, "medium: {" + with + (with.starts_with("nd") ? ", vd: 50" : with.starts_with("vd") ? ", nd: 1.5" : with.starts_with("reference_nm") ? ", index: 1.5, dispersion: {index: 1.4}" :
+                                                      with.starts_with("dispersion") ? ", index: 1.5, reference_nm: 550" : "") + "}");
     static const std::map<std::string, std::vector<std::string>> required{{"conic", {"radius_mm: 5"}}, {"zernike", {"normalization_radius_mm: 3", "indexing: osa", "coefficients_um: [1]"}},
                                                                           {"delaunay", {"points: points.xyz", "interpolation: multiquadric"}}};
     std::string others;

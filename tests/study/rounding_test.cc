@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What verify says of rounding, against closed forms and against the tracer's own numbers.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,6 +10,7 @@
 #include "lib/study/truth.h"
 #include "lib/trace/pattern.h"
 #include "tests/study/subjects.h"
+#include "tests/support/sag_grids.h"
 
 namespace sagitta::test {
 namespace {
@@ -136,6 +138,36 @@ TEST(Rounding, StaysWithinBoundsAtEveryShapeOfAFormula) {
     EXPECT_LE(surface.of_bound, 1);
     EXPECT_LT(surface.bound_position_mm.worst(), 300 * 0x1p-52 * rounding.scale_mm) << k;
     EXPECT_LT(surface.bound_direction_rad.worst(), 600 * 0x1p-52) << k;
+  }
+}
+
+// And at grids: waves with slopes and by differences, on a base and on none, with a hole; rays that end there have no bound.
+TEST(Rounding, StaysWithinBoundsAtGrids) {
+  const Folder folder;
+  std::string with_slopes = "31 31 0.25 0.25 0 0 0\n", without = "31 31 0.25 0.25 0 0.1 0\n";
+  for (int j = 0; j < 31; ++j)
+    for (int i = 0; i < 31; ++i) {
+      const tests::SagGrid::Node node = tests::of_waves(.02, -3.75 + .25 * i, 3.75 - .25 * j);
+      with_slopes += fmt::format("{} {} {} {} {}\n", node.z, node.dz_dx, node.dz_dy, node.d2z_dxdy, i == 20 && j == 12 ? 1 : 0);
+      without += fmt::format("{}\n", node.z);
+    }
+  folder.file("slopes.dat", with_slopes), folder.file("heights.dat", without);
+  const auto read = prescription::read_prescription(folder.file("system.yaml", prescription_of(
+      "  - {stop: true, grid: {points: slopes.dat, radius_mm: 7.8, conic_constant: -0.2}, thickness_mm: 3, medium: {index: 1.3777}}\n"
+      "  - {grid: {points: heights.dat}, thickness_mm: 20, medium: {index: 1.5}}\n  - {}\n", "entrance_pupil_diameter_mm: 5", "fields: {angles_deg: [[0, 0], [8, 12]]}\n")));
+  ASSERT_TRUE(read.model);
+  auto compiled = scene::compile(*read.model);
+  ASSERT_TRUE(compiled.scene);
+  const Rounding rounding = rounding_of(*compiled.scene, {.rays = 200});
+  EXPECT_TRUE(rounding.disagreements.empty());
+  for (std::size_t k = 1; k <= 3; ++k) {
+    const auto& surface = rounding.surfaces[k];
+    EXPECT_GT(surface.bound_position_mm.count(), 150);
+    EXPECT_LT(surface.bound_position_mm.count(), rounding.rays);
+    EXPECT_EQ(surface.without_bound, 0);
+    EXPECT_LE(surface.of_bound, 1);
+    EXPECT_LT(surface.bound_position_mm.worst(), 300 * 0x1p-52 * rounding.scale_mm) << k;
+    EXPECT_LT(surface.bound_direction_rad.worst(), 2000 * 0x1p-52) << k;  // slopes: heights over spacings
   }
 }
 

@@ -184,11 +184,12 @@ TEST(Gradient, ARayHasTheSameBitsOnAnyNumberOfThreadsAndSurfaceBySurface) {
   }
 }
 
-TEST(Gradient, ARayThatComesOutWhereThereIsNoIndexIsLost) {
+// As one that leaves it (tests/gradient_index).
+TEST(Gradient, ARayThatComesToAMediumWhereItHasNoIndexMissesIt) {
   const CompiledScene rod = scene_of("  - {stop: true, thickness_mm: 6, medium: {grin: {selfoc: {index: 1.6, g_per_mm: 0.3}}}}\n  - {}\n");  // r < 3.33 mm
   RayBatch rays = batch_of({{{0, 3.4, -1}, {0, 0, 1}}, {{0, 3.3, -1}, {0, 0, 1}}});
   trace(rod.scene, rod.scene.primary, rays);
-  EXPECT_EQ(rays.status(0), Status::not_converged);
+  EXPECT_EQ(rays.status(0), Status::missed);
   EXPECT_EQ(rays.ended_at(0), 1);
   EXPECT_EQ(rays.position(0), (Vec3<double>{0, 3.4, -1}));  // its last good place
   EXPECT_EQ(rays.status(1), Status::ok);
