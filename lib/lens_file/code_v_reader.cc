@@ -134,7 +134,7 @@ class CodeVReader {
       if (*number == 0 || *number > surfaces_.size()) return report_.broken(at, fmt::format("{} where S{} comes next", prescription::excerpt(name), surfaces_.size()));
       if (*number == surfaces_.size()) {
         if (has_image_) return report_.broken(at, "a surface behind the image surface (SI)");
-        surfaces_.push_back({});
+        surfaces_.emplace_back();
         surfaces_.back().place = at;
         has_image_ = name == "SI";
       }

@@ -21,13 +21,14 @@ Real real_of(const std::string& decimal) {
 }  // namespace
 
 std::optional<Real> parse_real(std::string_view text) {
-  if (text.starts_with('+')) text.remove_prefix(1);
-  const std::size_t first = text.find_first_not_of('-');
-  if (first == std::string_view::npos || first > 1 || (text[first] != '.' && (text[first] < '0' || text[first] > '9'))) return std::nullopt;
+  const bool has_sign = text.starts_with('+') || text.starts_with('-');
+  const std::string_view digits = text.substr(has_sign ? 1 : 0);
+  if (digits.empty() || (digits.front() != '.' && (digits.front() < '0' || digits.front() > '9'))) return std::nullopt;
+  if (text.front() == '+') text = digits;
   Real value = 0;
   const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (end != text.data() + text.size()) return std::nullopt;
-  if (fault == std::errc::result_out_of_range && std::abs(value) < 1) return 0;
+  if (fault == std::errc::result_out_of_range && (text.find("e-") != std::string_view::npos || text.find("E-") != std::string_view::npos)) return 0;
   if (fault != std::errc{} || !(std::abs(value) <= largest_number)) return std::nullopt;
   return value;
 }

@@ -54,8 +54,11 @@ struct Frame {
     const auto rounded = [](Real value, Real bound) { return shortest_within(value, std::max(bound, of_a_double * std::abs(value))); };
     const Vector from_axis = transform.translation - Vector{0, 0, axis_z}, angles = angles_of(transform.rotation);
     const Real of_place = error * (lengths + std::abs(axis_z)), of_angle = error * 180;
-    return {{rounded(from_axis.x, of_place), rounded(from_axis.y, of_place), rounded(from_axis.z, of_place)},
-            {rounded(angles.x, of_angle), rounded(angles.y, of_angle), rounded(angles.z, of_angle)}};
+    const auto angle = [&](Real value) {
+      const double result = rounded(value, of_angle);
+      return result == -180 ? 180 : result;
+    };
+    return {{rounded(from_axis.x, of_place), rounded(from_axis.y, of_place), rounded(from_axis.z, of_place)}, {angle(angles.x), angle(angles.y), angle(angles.z)}};
   }
 };
 

@@ -132,7 +132,9 @@ std::string head_comment(const Lens& lens, const std::string& file, const std::v
   text += comment(remarks);
   if (report.left_out_count() == 0) return text;
   text += comment("Left out of that file, by line:");
-  for (const Report::LeftOut& one : report.all_left_out()) text += comment(fmt::format("  {}: {}", std::max(one.place.line, 1), harmless(one.what)));
+  std::vector<Report::LeftOut> by_line = report.all_left_out();
+  std::stable_sort(by_line.begin(), by_line.end(), [](const auto& a, const auto& b) { return a.place.line < b.place.line; });
+  for (const Report::LeftOut& one : by_line) text += comment(fmt::format("  {}: {}", std::max(one.place.line, 1), harmless(one.what)));
   if (const auto more = report.left_out_count() - static_cast<int>(report.all_left_out().size()); more > 0) text += comment(fmt::format("  and {} more", more));
   return text;
 }

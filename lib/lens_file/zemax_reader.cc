@@ -182,7 +182,7 @@ class ZemaxReader {
     const std::optional<int> number = numbers_.whole(statement, 1, 0, most_surfaces);
     if (number && *number != static_cast<int>(surfaces_.size()))
       report_.broken(numbers_.place(statement.words[1]), fmt::format("SURF {} where {} comes next", *number, surfaces_.size()));
-    surfaces_.push_back({});
+    surfaces_.emplace_back();
     surface().place = surface().type_place = numbers_.place(statement);
   }
   void take_type(const Statement& statement) {

@@ -20,7 +20,7 @@ std::string messages_and(const Outcome& run) { return run.messages + run.prescri
 TEST(CodeVFile, becomes_a_prescription_that_reads_as_if_written_by_hand) {
   const Outcome run = import_text("lens.seq", sequence("S     50.0 4.0 NBK7_SCHOTT ! the front\n  STO\n  CCY 0; THC 0\n  SLB \"front\"\nS     -80.0 &\n   60.0\n  CON; K -0.5\n  CIR 7.5\n  CIR EDG 8.0\nSI    0.0 -0.25\n"));
   EXPECT_EQ(run.messages, "");
-  EXPECT_EQ(run.prescription, R"(# Test lens.
+  EXPECT_EQ(run.prescription, R"yaml(# Test lens.
 # Source: lens.seq, a CODE V sequence, by sagitta import.
 # What clips rays in it is an aperture that was set, not the size that a surface is drawn with.
 sagitta: 1
@@ -34,7 +34,7 @@ surfaces:
   - {name: front, stop: true, conic: {radius_mm: 50}, thickness_mm: 4, medium: N-BK7}
   - {conic: {radius_mm: -80, conic_constant: -0.5}, thickness_mm: 59.75, semi_diameter_mm: 7.5}
   - {name: image}
-)");
+)yaml");
 }
 
 TEST(CodeVFile, gives_curvatures_where_it_says_so) {

@@ -19,9 +19,8 @@ TEST(NumbersOfLensFiles, are_decimal_numbers_as_a_whole) {
   for (const char* text : {"", "-", "+", "--1", "+-1", "1,5", "1.5mm", "0x10", "nan", "inf", "-inf", "INFINITY", "1e31", "1e99999", "e5"}) EXPECT_FALSE(parse_real(text)) << text;
 }
 
-// 0.1 and 25.4 are no doubles, and their product as doubles is 2.5399999999999996.
+// Neither tenths nor 25.4 are doubles: the product of the nearest ones is often another double than the one nearest to the product.
 TEST(NumbersOfLensFiles, keep_their_decimals_when_units_are_converted) {
-  EXPECT_NE(0.1 * 25.4, 2.54);
   int differs = 0;
   for (int tenths = 1; tenths <= 1000; ++tenths) {
     const std::string text = std::to_string(tenths / 10) + "." + std::to_string(tenths % 10);
