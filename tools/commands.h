@@ -105,6 +105,13 @@ struct ConvertOptions {
 };
 int convert_command(const ConvertOptions& options);
 
+struct ImportOptions {
+  std::string lens, file;
+  std::vector<std::string> catalogs;  // AGF files
+  bool takes_parts = false;
+};
+int import_command(const ImportOptions& options);
+
 struct FitOptions {
   std::string points, format = "xyz", axes = "local";
   int terms = 36;

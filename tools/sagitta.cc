@@ -203,6 +203,16 @@ void add_convert(CLI::App& app, int& status) {
   command->callback([&status] { status = convert_command(options); });
 }
 
+void add_import(CLI::App& app, int& status) {
+  static ImportOptions options;
+  CLI::App* command = app.add_subcommand("import", "Make a prescription of a lens file of Zemax OpticStudio (.zmx, sequential) or CODE V (.seq)");
+  command->add_option("LENS", options.lens, "LENS.zmx or LENS.seq")->required();
+  command->add_option("-o,--output", options.file, "LENS.yaml")->required();
+  command->add_option("--catalog", options.catalogs, "glass catalogue (AGF) in which glasses are looked for, too; the prescription names it; may be repeated")->type_name("FILE.agf")->allow_extra_args(false);
+  command->add_flag("--partial", options.takes_parts, "leave out what is not understood: warnings in place of errors, and a list in the head comment");
+  command->callback([&status] { status = import_command(options); });
+}
+
 void add_study(CLI::App& app, int& status) {
   static StudyOptions options;
   CLI::App* command = app.add_subcommand("study", "Measure error against run time: every variant of a study, as tables, plots and a page");
@@ -289,6 +299,7 @@ int main(int argc, char** argv) {
   add_materials(app, status);
   add_fit(app, status);
   add_convert(app, status);
+  add_import(app, status);
   add_study(app, status);
   add_schema(app, status);
   try {

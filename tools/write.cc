@@ -18,11 +18,12 @@ bool make_folder(const char* command, const std::filesystem::path& folder) {
   return false;
 }
 
-bool overwrites(const char* command, const std::string& option, const std::filesystem::path& input, const std::vector<std::filesystem::path>& outputs) {
+bool overwrites(const char* command, const std::string& option, const std::filesystem::path& input, const std::vector<std::filesystem::path>& outputs,
+                const char* what) {
   for (const std::filesystem::path& output : outputs) {
     std::error_code fault;  // of names that are not there: nothing is overwritten
     if (!std::filesystem::equivalent(input, output, fault)) continue;
-    fmt::print(stderr, "sagitta {}: {}: {} is the file of the points, which would be overwritten\n  hint: give another name\n", command, option, output.string());
+    fmt::print(stderr, "sagitta {}: {}: {} is {}, which would be overwritten\n  hint: give another name\n", command, option, output.string(), what);
     return true;
   }
   return false;

@@ -15,9 +15,10 @@ namespace sagitta::tools {
 // Makes the folder and those above it, "" being the working folder; true if it is there. `command` is named in the message.
 bool make_folder(const char* command, const std::filesystem::path& folder);
 
-// True, with a message, where one of the files to be written, which `option` names, is the input, by whatever name or link:
+// True, with a message, where one of the files to be written, which `option` names, is the input (`what`), by whatever name or link:
 // writing it would destroy what cannot be made again.
-bool overwrites(const char* command, const std::string& option, const std::filesystem::path& input, const std::vector<std::filesystem::path>& outputs);
+bool overwrites(const char* command, const std::string& option, const std::filesystem::path& input, const std::vector<std::filesystem::path>& outputs,
+                const char* what = "the file of the points");
 
 // True if it was written.
 bool written(const char* command, const output::WriteResult& result);

@@ -63,6 +63,7 @@ const std::map<std::string, std::set<std::string>> layers{
     {"lib/surface", {"lib/numerics"}},
     {"lib/gradient_index", {"lib/numerics", "lib/surface"}},
     {"lib/prescription", {"lib/numerics", "lib/medium", "lib/surface", "lib/gradient_index"}},
+    {"lib/lens_file", {"lib/numerics", "lib/medium", "lib/surface", "lib/prescription"}},
     {"lib/scene", {"lib/numerics", "lib/surface", "lib/gradient_index"}},
     {"lib/trace", {"lib/numerics", "lib/surface", "lib/gradient_index", "lib/scene"}},
     {"lib/analysis", {"lib/numerics", "lib/surface", "lib/gradient_index", "lib/scene", "lib/trace"}},

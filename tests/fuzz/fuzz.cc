@@ -42,7 +42,7 @@ const std::vector<std::string>& words() {
   static const std::vector<std::string> all = [] {
     std::vector<std::string> found{": ", ", ", "\n", "\n- ", "\n  ", "{", "}", "[", "]", "&a ", "*a", "|", "#", "\"", "%%\n", "base.yaml", "cloud.xyz", "points.xyz", "points.polar",
                                    "points.cso", "points.ply", "glass", "mirror", "air", "true", "false", "DATA:", "type: ", "formula ", "tabulated n", "tabulated nk",
-                                   "wavelength_range: ", "coefficients: ", "data: |\n", "NM ", "CD ", "LD ", "GC ", "formula Cornu", "Dato misurato : Elevazioni\n", "Anelli : ", "Semimeridiani : ", "---\n", "-1000", ";", "\t",
+                                   "wavelength_range: ", "coefficients: ", "data: |\n", "NM ", "CD ", "LD ", "GC ", "\nSURF 1\n", "\n  TYPE ", "STANDARD", "COORDBRK", "EVENASPH", "SZERNSAG", "GRINSUR3", "\n  PARM 1 ", "\n  XDAT 2 ", "\n  CURV ", "\n  DISZ ", "INFINITY", "\n  GLAS ", "___BLANK 1 0 ", "MIRROR", "\n  STOP", "\nS 1 2 ", "\nSI 0 0\n", "; DAR; ", "; REV; ", "; BEN; ", "ADE ", "YDE ", "PIM", "REFL", "N-BK7", "517.642", "&\n", "formula Cornu", "Dato misurato : Elevazioni\n", "Anelli : ", "Semimeridiani : ", "---\n", "-1000", ";", "\t",
                                    "x,y,z\n", "ring,meridian,radius,z\n", "element vertex ", "element face ", "property double ", "property float ", "property list uchar int i\n",
                                    "format ascii 1.0\n", "format binary_little_endian 1.0\n", "format binary_big_endian 1.0\n", "end_header\n", "comment\n", "\r\n", "\xEF\xBB\xBF", "parameters: {A: 4}\n", "= A", "= 2 * ", "= max(A, ", "ln(", "-(", "^"};
     const auto take = [&](prescription::KeyTable table) {

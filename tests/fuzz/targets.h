@@ -14,6 +14,7 @@
 #include <string_view>
 
 #include "lib/analysis/job.h"
+#include "lib/lens_file/import.h"
 #include "lib/prescription/agf_reader.h"
 #include "lib/prescription/cloud_reader.h"
 #include "lib/prescription/grid_reader.h"
@@ -154,6 +155,22 @@ inline std::string fuzz_catalog(const Folder& folder, std::string_view bytes) {
   return {};
 }
 
+// As either format, whole or in part: what is written can be read.
+inline std::string fuzz_lens_file(const Folder& folder, std::string_view bytes) {
+  for (const char* name : {"lens.zmx", "lens.seq"}) {
+    const std::string file = folder.write(name, std::string(bytes));
+    for (const bool takes_parts : {false, true}) {
+      const lens_file::Imported imported = lens_file::import({file, folder.path() + "/imported.yaml", {}, takes_parts});
+      if (const std::string wrong = wrong_with(imported.findings, imported.prescription.has_value()); !wrong.empty()) return wrong;
+      if (!imported.prescription) continue;
+      const auto read = prescription::read_prescription(folder.write("imported.yaml", *imported.prescription));
+      if (!read.model) return "a prescription that cannot be read: " + format(read.findings.all().front());
+      if (const std::string wrong = wrong_with(*read.model); !wrong.empty()) return wrong;
+    }
+  }
+  return {};
+}
+
 template <const char* format>
 std::string fuzz_cloud(const Folder& folder, std::string_view bytes) {
   prescription::Findings findings;
@@ -258,7 +275,7 @@ struct Target {
   std::string_view name;
   std::string (*run)(const Folder& folder, std::string_view bytes);
 };
-inline constexpr std::array targets{Target{"prescription", fuzz_prescription}, Target{"study", fuzz_study}, Target{"material", fuzz_material}, Target{"catalog", fuzz_catalog},
+inline constexpr std::array targets{Target{"prescription", fuzz_prescription}, Target{"study", fuzz_study}, Target{"material", fuzz_material}, Target{"catalog", fuzz_catalog}, Target{"lens_file", fuzz_lens_file},
                                     Target{"xyz", fuzz_cloud<xyz>}, Target{"cso", fuzz_cloud<cso>}, Target{"polar", fuzz_cloud<polar>},
                                     Target{"ply", fuzz_cloud<ply>}, Target{"grid", fuzz_grid}, Target{"compile", fuzz_compile}};
 

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lib/lens_file/code_v_surface_internal.h"
+
+#include <cmath>
+
+#include "lib/lens_file/numbers.h"
+
+namespace sagitta::lens_file {
+
+Surface surface_of(const CodeVSurface& given, Real unit_mm, Report& report) {
+  using Decenter = CodeVSurface::Decenter;
+  Surface surface;
+  surface.place = given.place, surface.name = given.name, surface.stop = given.stop, surface.medium = given.medium;
+  surface.curvature = given.curvature / unit_mm;
+  surface.thickness = given.thickness * unit_mm;
+  const double radius = given.radius ? static_cast<double>(*given.radius * unit_mm) : radius_of(surface.curvature);
+  if (std::isfinite(radius) || !given.powers.empty()) {
+    surface.shape = {given.powers.empty() ? "conic" : "asphere", {{"radius_mm", radius}}};
+    if (given.conic != 0) surface.shape.items.push_back({"conic_constant", static_cast<double>(given.conic)});
+    if (!given.powers.empty()) surface.shape.items.push_back({"coefficients", given.powers});
+  }
+  if (given.semi_diameter != 0) surface.semi_diameter = static_cast<double>(given.semi_diameter * unit_mm);
+  surface.inner_semi_diameter = static_cast<double>(given.inner_semi_diameter * unit_mm);
+  if (given.decenter_place.line == 0) return surface;
+  const Move move{unit_mm * given.shift, {-given.tilt.x, -given.tilt.y, given.tilt.z}};  // ADE and BDE are left-handed
+  switch (given.decenter) {
+    case Decenter::basic: surface.before.push_back(move); break;
+    case Decenter::and_return: surface.own.push_back(move); break;
+    case Decenter::reverse: surface.after.push_back(move.inverse()); break;
+    case Decenter::bend:
+      if (given.tilt.x != 0 && given.tilt.y != 0) report.left_out(given.decenter_place, "BEN about two axes, whose turn about the third is not known");
+      surface.before.push_back(move);
+      surface.after.push_back({{}, move.tilt_deg});
+  }
+  return surface;
+}
+
+}  // namespace sagitta::lens_file

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// A surface of a CODE V sequence as its commands say it, and the step from that to a surface of a lens.
+//
+// Decenters: the frame is moved by XDE YDE ZDE and turned by ADE, BDE, CDE about its new x, y, z (ADE and BDE left-handed), and
+//   basic            the surfaces behind stay in that frame
+//   DAR              only this surface stands in it
+//   REV              this surface does not; the frame behind it is moved back by it, the last turn first
+//   BEN (a fold)     this surface stands in it; the frame behind is turned once more
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "lib/lens_file/lens.h"
+#include "lib/lens_file/report.h"
+
+namespace sagitta::lens_file {
+
+struct CodeVSurface {
+  Place place;
+  std::string name;
+  bool stop = false;
+  std::optional<Real> radius;  // where it was given so
+  Real curvature = 0, conic = 0, thickness = 0;
+  Place conic_place, thickness_place;
+  Indexed powers;  // of r in lens units
+  Medium medium;
+  Real semi_diameter = 0, inner_semi_diameter = 0;  // 0: none
+  enum class Decenter { basic, and_return, reverse, bend } decenter = Decenter::basic;
+  numerics::Vec3<Real> shift{}, tilt{};  // tilt as in the file
+  Place decenter_place;
+};
+
+// Lengths of `given` are in units of `unit_mm`, but the powers.
+Surface surface_of(const CodeVSurface& given, Real unit_mm, Report& report);
+
+}  // namespace sagitta::lens_file

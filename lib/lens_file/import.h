@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// From a lens file of another program to the text of a prescription: read it, find its glasses, solve its image, write it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lib/prescription/diagnostics.h"
+
+namespace sagitta::lens_file {
+
+struct ImportRequest {
+  std::string file;                   // of the other program
+  std::string output;                 // where the prescription will stand: media are looked for as they will be from there
+  std::vector<std::string> catalogs;  // AGF files in which glasses are looked for, too
+  bool takes_parts = false;           // what is not understood is left out, with a warning, in place of an error
+};
+
+struct Imported {
+  std::optional<std::string> prescription;  // its text; none where there is an error among the findings
+  prescription::Findings findings;          // in the order of the lines of the file
+  int surface_count = 0, left_out_count = 0;
+};
+
+Imported import(const ImportRequest& request);
+
+}  // namespace sagitta::lens_file

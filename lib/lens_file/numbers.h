@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Numbers of lens files: how they are read, and how a prescription writes what is computed from them, so that a person could have written it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "lib/lens_file/lens.h"
+
+namespace sagitta::lens_file {
+
+// What may be meant by a number of a file: 0, or a size of at most this.
+inline constexpr Real largest_number = 1e30L;
+
+// A decimal number, whole: 1.5, -3E-4, +2, .5; finite and at most largest_number. None: it is no such number. Independent of the locale.
+std::optional<Real> parse_real(std::string_view text);
+
+// The shortest decimal number within `error` of a value, 0 if that is; where none of 17 digits is, the double nearest to it.
+double shortest_within(Real value, Real error);
+
+// Of the radii whose inverse is, in double precision, the curvature given (in 1/mm), the one of the fewest digits. Infinite for 0. Where no double has that
+// inverse, the one nearest to 1/c.
+double radius_of(Real curvature);
+
+// The shortest text that reads back as the same double; ".inf" and "-.inf" as YAML has them; "0" for -0.
+std::string number_text(double value);
+
+// `unit` mm to a power, by repeated multiplication and one division.
+Real power(Real unit, int exponent);
+
+}  // namespace sagitta::lens_file

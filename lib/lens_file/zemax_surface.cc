@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lib/lens_file/zemax_surface_internal.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+
+#include "lib/lens_file/numbers.h"
+#include "lib/surface/conic.h"
+#include "lib/surface/xy_polynomial.h"
+
+namespace sagitta::lens_file {
+namespace {
+
+constexpr Real um_per_mm = 1000;
+
+class Reader {
+ public:
+  Reader(const ZemaxSurface& given, Real unit_mm, Report& report) : given_(given), unit_(unit_mm), report_(report), parm_(given.parm), xdat_(given.xdat) {}
+
+  Real unit() const { return unit_; }
+  double radius() const { return radius_of(given_.curvature.value / unit_); }
+  double conic() const { return static_cast<double>(given_.conic.value); }
+  // A length in mm.
+  double length(Real value) const { return static_cast<double>(value * unit_); }
+
+  // A parameter, which is then used; 0 where the file has none.
+  PlacedNumber parm(int i) { return take(parm_, i); }
+  PlacedNumber xdat(int i) { return take(xdat_, i); }
+  // A radius as a parameter: 0 is a plane.
+  double radius_parm(int i) {
+    const Real radius = parm(i).value;
+    return radius == 0 ? std::numeric_limits<double>::infinity() : length(radius);
+  }
+  // Coefficients of powers, from PARM `first` on.
+  Indexed powers(int first, int last, int first_power, int step) {
+    Indexed found;
+    for (int i = first, k = first_power; i <= last; ++i, k += step)
+      if (const Real a = parm(i).value; a != 0) found[k] = static_cast<double>(a * power(unit_, 1 - k));
+    return found;
+  }
+  // Terms of an extra-data surface: XDAT 1 is their number, XDAT 2 the radius of normalisation, XDAT 3, ... are their coefficients, in lens units.
+  struct Terms {
+    double normalization_radius = 1;
+    Indexed coefficients;
+  };
+  Terms terms(int most, Real per_mm) {
+    Terms found;
+    const PlacedNumber count = xdat(1), radius = xdat(2);
+    if (!(count.value >= 0 && count.value <= most))
+      report_.broken(place_of(count), fmt::format("XDAT 1 of {}: {} terms, where there may be 0 to {}", given_.type, number_text(static_cast<double>(count.value)), most));
+    for (int j = 1; j <= most && j <= count.value; ++j)
+      if (const Real c = xdat(j + 2).value; c != 0) found.coefficients[j] = static_cast<double>(c * unit_ * per_mm);
+    if (!found.coefficients.empty() && !(radius.value >= 1e-12L && radius.value <= 1e12L))
+      report_.broken(place_of(radius), fmt::format("XDAT 2 of {}: the radius of normalisation is {}", given_.type, number_text(static_cast<double>(radius.value))), "it is positive");
+    else
+      found.normalization_radius = length(radius.value);
+    return found;
+  }
+
+  void leave_out(const PlacedNumber& number, const std::string& what) {
+    if (number.value != 0) report_.left_out(number.place, what);
+  }
+  void leave_out_the_rest() {
+    for (const auto& [operand, rest] : {std::pair{"PARM", &parm_}, std::pair{"XDAT", &xdat_}})
+      for (const auto& [i, number] : *rest) leave_out(number, fmt::format("{} {} of a surface of type {} is not known", operand, i, prescription::excerpt(given_.type)));
+  }
+
+ private:
+  Place place_of(const PlacedNumber& number) const { return number.place.line > 0 ? number.place : given_.place; }
+  static PlacedNumber take(std::map<int, PlacedNumber>& from, int i) {
+    const auto node = from.extract(i);
+    return node.empty() ? PlacedNumber{} : node.mapped();
+  }
+
+  const ZemaxSurface& given_;
+  Real unit_;
+  Report& report_;
+  std::map<int, PlacedNumber> parm_, xdat_;
+};
+
+Form conic(Reader& from) {
+  if (std::isinf(from.radius())) return {};
+  Form form{"conic", {{"radius_mm", from.radius()}}};
+  if (from.conic() != 0) form.items.push_back({"conic_constant", from.conic()});
+  return form;
+}
+
+// A conic with something on top; alone where that is nothing.
+Form on_conic(Reader& from, const char* kind, std::vector<Item> more, bool is_nothing) {
+  Form form = conic(from);
+  if (is_nothing) return form;
+  form.kind = kind;
+  if (form.items.empty()) form.items.push_back({"radius_mm", from.radius()});
+  form.items.insert(form.items.end(), more.begin(), more.end());
+  return form;
+}
+
+Form even_asphere(Reader& from) {
+  const Indexed a = from.powers(1, 8, 2, 2);
+  return on_conic(from, "asphere", {{"coefficients", a}}, a.empty());
+}
+
+Form odd_asphere(Reader& from) {
+  from.leave_out(from.parm(1), "PARM 1 of ODDASPHE, a term in r (a cone), is not a shape here");
+  const Indexed a = from.powers(2, 8, 2, 1);
+  return on_conic(from, "asphere", {{"coefficients", a}}, a.empty());
+}
+
+Form toroid(Reader& from) {
+  Form form{"toroid", {{"radius_rotation_mm", from.radius_parm(1)}, {"radius_mm", from.radius()}}};
+  if (from.conic() != 0) form.items.push_back({"conic_constant", from.conic()});
+  if (const Indexed a = from.powers(2, 8, 2, 2); !a.empty()) form.items.push_back({"coefficients", a});
+  from.xdat(1), from.xdat(2);  // of Zernike terms, which are left out where there are any
+  return form;
+}
+
+Form biconic(Reader& from) {
+  Form form{"biconic", {{"radius_x_mm", from.radius_parm(1)}, {"radius_y_mm", from.radius()}}};
+  if (const double k = static_cast<double>(from.parm(2).value); k != 0) form.items.push_back({"conic_constant_x", k});
+  if (from.conic() != 0) form.items.push_back({"conic_constant_y", from.conic()});
+  return form;
+}
+
+Form xy_polynomial(Reader& from) {
+  constexpr int degree = surface::XyPolynomial::highest_degree;
+  const Reader::Terms terms = from.terms(degree * (degree + 3) / 2, 1);
+  return on_conic(from, "xy_polynomial", {{"normalization_radius_mm", terms.normalization_radius}, {"coefficients", terms.coefficients}}, terms.coefficients.empty());
+}
+
+Form zernike(Reader& from, const char* indexing, int most) {
+  const Reader::Terms terms = from.terms(most, um_per_mm);
+  return on_conic(from, "zernike", {{"normalization_radius_mm", terms.normalization_radius}, {"indexing", indexing}, {"coefficients_um", terms.coefficients}},
+                  terms.coefficients.empty());
+}
+Form standard_zernike(Reader& from) { return zernike(from, "noll", 231); }
+Form fringe_zernike(Reader& from) { return zernike(from, "fringe", 37); }
+
+// n = n0 + sum b_k r^k + sum a_i z^i; PARM 1 is the step of OpticStudio's integration, which is no property of the lens.
+Form gradient(Reader& from, int r_count, int z_count) {
+  from.parm(1);
+  Form form{"polynomial", {{"index", static_cast<double>(from.parm(2).value)}}};
+  const auto coefficients = [&](int first, int count, int step) {
+    Indexed found;
+    for (int i = 0; i < count; ++i)
+      if (const Real a = from.parm(first + i).value; a != 0) found[step * (i + 1)] = static_cast<double>(a * power(from.unit(), -step * (i + 1)));
+    return found;
+  };
+  const Indexed r = coefficients(3, r_count, 2), z = coefficients(3 + r_count, z_count, 1);
+  if (!z.empty()) form.items.push_back({"z_coefficients", z});
+  if (!r.empty()) form.items.push_back({"r_coefficients", r});
+  return form;
+}
+Form gradient_1(Reader& from) { return gradient(from, 1, 0); }
+Form gradient_3(Reader& from) { return gradient(from, 3, 3); }
+
+struct Type {
+  std::string_view name;
+  Form (*shape)(Reader&);
+  Form (*gradient)(Reader&) = nullptr;
+};
+constexpr std::array types{Type{"STANDARD", conic}, Type{"EVENASPH", even_asphere}, Type{"ODDASPHE", odd_asphere}, Type{"TOROIDAL", toroid}, Type{"BICONICX", biconic},
+                           Type{"XPOLYNOM", xy_polynomial}, Type{"SZERNSAG", standard_zernike}, Type{"FZERNSAG", fringe_zernike}, Type{"GRINSUR1", conic, gradient_1},
+                           Type{"GRINSUR3", conic, gradient_3}};
+
+void clip(const ZemaxSurface& given, Real unit, Report& report, Surface& surface) {
+  if (!given.clip) return;
+  const auto& [operand, least, most, at] = *given.clip;
+  if (given.clip_is_off_centre) return report.left_out(at, operand + ": an aperture off the vertex (OBDC) is not one here");
+  if (!(least >= 0 && most >= least)) return report.broken(at, operand + ": its radii are not 0 <= least <= largest");
+  if (most == 0) return report.warning(at, operand + ": an aperture of no extent, which is taken as none");
+  if (operand == "OBSC") {
+    if (least > 0) return report.left_out(at, "OBSC: an obscuration that leaves its middle free is not one here");
+    surface.inner_semi_diameter = static_cast<double>(most * unit);
+    return;
+  }
+  surface.inner_semi_diameter = static_cast<double>(least * unit);
+  if (most < largest_number) surface.semi_diameter = static_cast<double>(most * unit);
+}
+
+}  // namespace
+
+Surface surface_of(const ZemaxSurface& given, Real unit_mm, Report& report) {
+  Surface surface;
+  surface.place = given.place;
+  surface.name = given.comment;
+  surface.stop = given.stop;
+  surface.curvature = given.curvature.value / unit_mm;
+  surface.thickness = given.thickness.value * unit_mm;
+  surface.medium = given.medium;
+  if (given.curvature.value != 0 && !(std::abs(surface.curvature) >= 1e-30L))
+    report.broken(given.curvature.place, fmt::format("a curvature of {} is none", number_text(static_cast<double>(given.curvature.value))), "write 0");
+  if (!surface::conic_constants.contains(static_cast<double>(given.conic.value)))
+    report.broken(given.conic.place, fmt::format("a conic constant lies from {:g} to {:g}", surface::conic_constants.low, surface::conic_constants.high));
+  Reader reader(given, unit_mm, report);
+  const auto type = std::find_if(types.begin(), types.end(), [&](const Type& one) { return one.name == given.type; });
+  if (type == types.end()) {
+    report.left_out(given.type_place, fmt::format("a surface of type {} is not known; its conic (CURV, CONI) stands for it", prescription::excerpt(given.type)));
+    surface.shape = conic(reader);
+  } else {
+    surface.shape = type->shape(reader);
+    if (type->gradient) {
+      surface.medium = {Medium::Kind::gradient, {}, 1, 0, type->gradient(reader), given.type_place};
+      const double index = std::get<double>(surface.medium.gradient.items.front().value);
+      if (!(index >= medium::least_index && index <= medium::largest_index))
+        report.broken(given.type_place, fmt::format("{}: n0 (PARM 2) is {}, where an index lies from {} to {}", given.type, number_text(index), medium::least_index, medium::largest_index));
+    }
+    reader.leave_out_the_rest();
+  }
+  clip(given, unit_mm, report, surface);
+  return surface;
+}
+
+Move move_of(const ZemaxSurface& given, Real unit_mm, Report& report) {
+  Reader reader(given, unit_mm, report);
+  const auto parm = [&](int i) { return reader.parm(i).value; };
+  Move move;
+  move.decenter = {parm(1) * unit_mm, parm(2) * unit_mm, 0};
+  move.tilt_deg = {parm(3), parm(4), parm(5)};
+  move.tilts_first = parm(6) != 0;
+  reader.leave_out_the_rest();
+  return move;
+}
+
+}  // namespace sagitta::lens_file

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the commands of CODE V sequences become. Rays of whole lenses are in tests/commands/import_command_test.cc.
+#include <gmock/gmock.h>
+
+#include "tests/lens_file/support.h"
+
+namespace sagitta::lens_file::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+using numerics::Vec3;
+
+std::string sequence(const std::string& surfaces, const std::string& mode = "RDM") {
+  return mode + ";LEN       \"VERSION: 11.2       LENS VERSION: 84\"\nTITLE 'Test lens'\nEPD   4.0\nDIM   M\nWL    656.3 587.6 486.1\nREF   2\nWTW   1 1 1\nINI   ' '\nXAN   0.0 0.0\nYAN   0.0 10.0\n"
+         "WTF   1.0 1.0\nVUY   0.0 0.0\nVLY   0.0 0.0\nSO    0.0 0.1e14\n" + surfaces + "GO \n";
+}
+std::string messages_and(const Outcome& run) { return run.messages + run.prescription; }
+
+TEST(CodeVFile, becomes_a_prescription_that_reads_as_if_written_by_hand) {
+  const Outcome run = import_text("lens.seq", sequence("S     50.0 4.0 NBK7_SCHOTT ! the front\n  STO\n  CCY 0; THC 0\n  SLB \"front\"\nS     -80.0 &\n   60.0\n  CON; K -0.5\n  CIR 7.5\n  CIR EDG 8.0\nSI    0.0 -0.25\n"));
+  EXPECT_EQ(run.messages, "");
+  EXPECT_EQ(run.prescription, R"yaml(# Test lens.
+# Source: lens.seq, a CODE V sequence, by sagitta import.
+# What clips rays in it is an aperture that was set, not the size that a surface is drawn with.
+sagitta: 1
+name: Test lens
+source: "lens.seq, a CODE V sequence"
+wavelengths_nm: [656.3, 587.6, 486.1]
+primary_nm: 587.6
+aperture: {entrance_pupil_diameter_mm: 4}
+fields: {angles_deg: [[0, 0], [0, 10]]}
+surfaces:
+  - {name: front, stop: true, conic: {radius_mm: 50}, thickness_mm: 4, medium: N-BK7}
+  - {conic: {radius_mm: -80, conic_constant: -0.5}, thickness_mm: 59.75, semi_diameter_mm: 7.5}
+  - {name: image}
+)yaml");
+}
+
+TEST(CodeVFile, gives_curvatures_where_it_says_so) {
+  EXPECT_THAT(import_text("lens.seq", sequence("S 0.02 4 NBK7_SCHOTT\nSTO\nS -0.0125 60\nSI 0 0\n", "RDM N")).prescription, HasSubstr("conic: {radius_mm: 50}, thickness_mm: 4"));
+  EXPECT_THAT(import_text("lens.seq", sequence("S 0 0; CUY 0.02; THI 4\nSTO\nS 0.1 60; RDY S2 -80\nSI 0 0\nTHI S1 3.5; GLA S1 NBK7_SCHOTT\n", "RDM N")).prescription,
+              HasSubstr("  - {stop: true, conic: {radius_mm: 50}, thickness_mm: 3.5, medium: N-BK7}\n  - {conic: {radius_mm: -80}, thickness_mm: 60}\n"));
+}
+
+TEST(CodeVFile, has_lengths_in_its_dimension) {
+  std::string text = sequence("S 0.5 0.1 NBK7_SCHOTT\n STO; ASP; K -1; A 0.1; B 0\nS -2 3\n CIR 0.3; CIR OBS L'A' 0.1; DAR; YDE 0.7; ADE 5\nSI 0 0\n");
+  text.replace(text.find("DIM   M"), 7, "DIM   I");
+  const auto model = model_of("lens.seq", text);
+  EXPECT_EQ(model.aperture.value, 101.6);
+  EXPECT_EQ(model.surfaces[0].shape.parameters.number("radius_mm"), 12.7);
+  EXPECT_EQ(model.surfaces[0].thickness_mm, 2.54);
+  EXPECT_DOUBLE_EQ(at(model.surfaces[0], "coefficients", 4), 0.1 / (25.4 * 25.4 * 25.4));
+  EXPECT_EQ(model.surfaces[1].semi_diameter_mm, 7.62);
+  EXPECT_EQ(model.surfaces[1].inner_semi_diameter_mm, 2.54);
+  EXPECT_EQ(model.surfaces[1].decenter_mm, (Vec3<double>{0, 17.78, 0}));
+  EXPECT_EQ(model.surfaces[1].tilt_deg, (Vec3<double>{-5, 0, 0}));
+}
+
+TEST(CodeVAsphere, begins_at_the_fourth_power) {
+  const auto model = model_of("lens.seq", sequence("S 50 4\n STO; ASP; K -0.5\n A -1e-4; B 2e-6; C -3e-8; D 4e-10; E 5e-12; F 6e-14; G 7e-16; H 8e-18; J 9e-20\nS 0 3\nSI 0 0\n"));
+  EXPECT_EQ(model.surfaces[0].shape.parameters.list("coefficients").size(), 9u);
+  EXPECT_EQ(at(model.surfaces[0], "coefficients", 4), -1e-4);
+  EXPECT_EQ(at(model.surfaces[0], "coefficients", 6), 2e-6);
+  EXPECT_EQ(at(model.surfaces[0], "coefficients", 18), 8e-18);
+  EXPECT_EQ(at(model.surfaces[0], "coefficients", 20), 9e-20);
+  EXPECT_EQ(model.surfaces[0].shape.parameters.number("conic_constant"), -0.5);
+}
+
+TEST(CodeVGlass, is_a_name_with_its_maker_or_a_code) {
+  const auto with = [](const std::string& glass) { return import_text("lens.seq", sequence("S 50 4 " + glass + "\nSTO\nS 0 3\nSI 0 0\n")); };
+  for (const char* name : {"NSK16_SCHOTT", "N-SK16", "'N-SK16'", "nsk16_schott"}) EXPECT_THAT(messages_and(with(name)), HasSubstr("medium: N-SK16}"));
+  EXPECT_THAT(messages_and(with("NSF6HT_SCHOTT")), HasSubstr("medium: N-SF6HT}"));
+  EXPECT_THAT(messages_and(with("REFL")), HasSubstr("medium: mirror}"));
+  EXPECT_THAT(messages_and(with("AIR")), HasSubstr("thickness_mm: 4}"));
+  EXPECT_THAT(messages_and(with("517.642")), HasSubstr("medium: {nd: 1.517, vd: 64.2}}"));
+  EXPECT_THAT(messages_and(with("517642")), HasSubstr("medium: {nd: 1.517, vd: 64.2}}"));
+  EXPECT_THAT(messages_and(with("516800.6417")), HasSubstr("medium: {nd: 1.5168, vd: 64.17}}"));
+  EXPECT_THAT(with("1.517").messages, HasSubstr("lens.seq:15:8: error: '1.517' is neither a glass nor a glass code"));
+}
+
+// ADE and BDE turn left-handed, CDE right-handed.
+TEST(CodeVDecenter, with_return_is_the_surface_s_own) {
+  const auto model = model_of("lens.seq", sequence("S 0 10\nSTO\nS 50 4\n DAR; XDE 1; YDE 2; ZDE 3; ADE 10; BDE 20; CDE 30\nS 0 3\nSI 0 0\n"));
+  EXPECT_EQ(model.surfaces[1].decenter_mm, (Vec3<double>{1, 2, 3}));
+  EXPECT_EQ(model.surfaces[1].tilt_deg, (Vec3<double>{-10, -20, 30}));
+  EXPECT_EQ(model.surfaces[2].decenter_mm, Vec3<double>{});
+  EXPECT_EQ(model.surfaces[2].tilt_deg, Vec3<double>{});
+}
+
+TEST(CodeVDecenter, without_return_moves_what_follows_until_it_is_reversed) {
+  const auto model = model_of("lens.seq", sequence("S 0 10\nSTO\nS 50 4\n YDE 2; ADE -90\nS 0 7\n REV; YDE 2; ADE -90\nS 0 3\nSI 0 0\n"));
+  EXPECT_EQ(model.surfaces[1].decenter_mm, (Vec3<double>{0, 2, 0}));
+  EXPECT_EQ(model.surfaces[1].tilt_deg, (Vec3<double>{90, 0, 0}));
+  // 4 mm along the turned axis, which points to -y; the reversing surface stands in the turned frame
+  EXPECT_EQ(model.surfaces[2].decenter_mm, (Vec3<double>{0, -2, -4}));
+  EXPECT_EQ(model.surfaces[2].tilt_deg, (Vec3<double>{90, 0, 0}));
+  // back to the directions, at the reversed place: from (0, -2, 10) by (0, -2, 0), which is turned no more
+  EXPECT_EQ(model.surfaces[3].tilt_deg, Vec3<double>{});
+  EXPECT_EQ(model.surfaces[3].decenter_mm, (Vec3<double>{0, -4, -4}));
+}
+
+TEST(CodeVDecenter, with_bend_is_a_fold) {
+  const auto model = model_of("lens.seq", sequence("S 0 50\nSTO\nS 0 -30 REFL\n ADE -45; BEN\nS 0 -2\nSI 0 0\n"));
+  EXPECT_EQ(model.surfaces[1].tilt_deg, (Vec3<double>{45, 0, 0}));
+  EXPECT_EQ(model.surfaces[2].tilt_deg, (Vec3<double>{90, 0, 0}));
+  EXPECT_EQ(model.surfaces[2].decenter_mm, (Vec3<double>{0, 30, 30}));
+  EXPECT_EQ(model.surfaces[3].decenter_mm, (Vec3<double>{0, 32, 32}));
+}
+
+// A thin biconcave mirror: f = R/2.
+TEST(CodeVImageSolve, finds_the_paraxial_image) {
+  const std::string mirror = "S 0 60\nSTO\nS -100 -1 REFL\n PIM\nSI 0 0.25\n";
+  const auto solved = import_text("lens.seq", sequence(mirror));
+  EXPECT_THAT(solved.prescription, HasSubstr("thickness_mm: -49.75, medium: mirror"));
+  EXPECT_THAT(solved.messages, HasSubstr("warning: the last thickness, -1 mm, is not the one to the paraxial image; it is solved: -50 mm"));
+  // what a file gives to its digits stands
+  std::string given = mirror;
+  const Outcome stands = import_text("lens.seq", sequence(given.replace(given.find("-1 REFL"), 2, "-50.00003")));
+  EXPECT_EQ(stands.messages, "");
+  EXPECT_THAT(stands.prescription, HasSubstr("thickness_mm: -49.75003,"));
+  given = mirror;
+  const Outcome empty = import_text("lens.seq", sequence(given.replace(given.find("-1 REFL"), 2, "0")));
+  EXPECT_EQ(empty.messages, "");
+  EXPECT_THAT(empty.prescription, HasSubstr("thickness_mm: -49.75,"));
+  // from 100 mm before a mirror of f = -50: 1:1
+  std::string finite = sequence("S -100 0 REFL\nSTO\n PIM\nSI 0 0\n");
+  finite.replace(finite.find("0.1e14"), 6, "100");
+  EXPECT_THAT(import_text("lens.seq", finite).prescription, HasSubstr("thickness_mm: -100,"));
+}
+
+TEST(CodeVFile, has_defaults_that_are_told) {
+  std::string text = sequence("S 50 4 NBK7_SCHOTT\nS 0 3\nSI 0 0\n");
+  text.replace(text.find("REF   2"), 7, "");
+  const Outcome run = import_text("lens.seq", text);
+  EXPECT_EQ(run.messages, "lens.seq:1:1: warning: no REF: the middle wavelength is taken as the primary one\nlens.seq:1:1: warning: no STO: surface 1 is taken as the stop\n");
+  EXPECT_THAT(run.prescription, HasSubstr("primary_nm: 587.6"));
+  EXPECT_THAT(run.prescription, HasSubstr("{stop: true, conic: {radius_mm: 50}"));
+}
+
+TEST(CodeVFile, partly_understood_lists_what_is_left_out) {
+  const std::string text = sequence("S 50 4 NBK7_SCHOTT\nSTO\n REX 5; REY 6\nS 0 3\n DIF DOE\nSI 0 0\nVUX 0.1 0.2\n");
+  const Outcome refused = import_text("lens.seq", text), partial = import_text("lens.seq", text, true);
+  EXPECT_EQ(refused.prescription, "");
+  EXPECT_THAT(refused.messages, HasSubstr("lens.seq:17:2: error: REX is not known\nlens.seq:17:9: error: REY is not known\nlens.seq:19:2: error: DIF is not known\nlens.seq:21:1: error: VUX: vignetting factors\n"));
+  EXPECT_EQ(partial.left_out_count, 4);
+  EXPECT_THAT(partial.prescription, HasSubstr("#   17: REX is not known\n#   17: REY is not known\n#   19: DIF is not known\n#   21: VUX: vignetting factors\n"));
+  EXPECT_THAT(partial.messages, Not(HasSubstr("error")));
+}
+
+}  // namespace
+}  // namespace sagitta::lens_file::test

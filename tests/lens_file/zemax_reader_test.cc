@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the operands of Zemax files become. Rays of whole lenses are in tests/commands/import_command_test.cc.
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "tests/lens_file/support.h"
+
+namespace sagitta::lens_file::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+TEST(ZemaxFile, becomes_a_prescription_that_reads_as_if_written_by_hand) {
+  const Outcome run = import_text("lens.zmx", zemax("ENPD 1.0E+1\nFTYP 0 0 2 3 0 0 0\nXFLN 0 0 0 0 0 0 0 0 0 0 0 0\nYFLN 0 7.5 0 0 0 0 0 0 0 0 0 0\nWAVM 1 4.861327E-1 1\nWAVM 2 5.875618E-1 1\nWAVM 3 6.562725E-1 1\nWAVM 4 5.5E-1 1\n",
+      zemax_surface(0, "TYPE STANDARD\nCURV 0.0\nDISZ INFINITY") +
+      zemax_surface(1, "STOP\nCOMM front, first\nTYPE STANDARD\nCURV 2.000000000000000000E-002 0 0 0 0 \"\"\nDISZ 4.0\nGLAS N-BK7 0 0 1.5 4.0E+1 0 0 0 0 0 0 \nDIAM 7.6 1 0 0 1 \"\"\nFLAP 0 7.6 0") +
+      zemax_surface(2, "COMM back\nTYPE STANDARD\nCURV -1.250000000000000000E-002\nCONI -5.0E-1\nDISZ 6.0E+1\nMAZH 0 0\nDIAM 7.5 0 0 0 1 \"\"") + zemax_surface(3, "TYPE STANDARD\nCURV 0.0\nDISZ 0\nDIAM 1 0 0 0 1 \"\"")));
+  EXPECT_EQ(run.messages, "lens.zmx:69:1: note: 2 lines from here on are not read: merit function, tolerances and configurations have no optics\n");
+  EXPECT_EQ(run.prescription, R"yaml(# Test lens.
+# Source: lens.zmx, a Zemax lens file (VERS 140730 201 26155), by sagitta import.
+# What clips rays in it is an aperture that was set, not the size that a surface is drawn with. Its glasses are of SCHOTT MISC.
+sagitta: 1
+name: Test lens
+source: "lens.zmx, a Zemax lens file (VERS 140730 201 26155)"
+wavelengths_nm: [486.1327, 587.5618, 656.2725]
+aperture: {entrance_pupil_diameter_mm: 10}
+fields: {angles_deg: [[0, 0], [0, 7.5]]}
+surfaces:
+  - {name: "front, first", stop: true, conic: {radius_mm: 50}, thickness_mm: 4, medium: N-BK7, semi_diameter_mm: 7.6}
+  - {name: back, conic: {radius_mm: -80, conic_constant: -0.5}, thickness_mm: 60}
+  - {name: image}
+)yaml");
+}
+
+TEST(ZemaxFile, may_be_in_any_encoding) {
+  const std::string text = zemax_with("TYPE STANDARD\nCURV 0.1\nDISZ 5");
+  const std::string expected = import_text("lens.zmx", text).prescription;
+  EXPECT_THAT(expected, HasSubstr("radius_mm: 10"));
+  for (const std::string& bytes : {in_utf_16(text, true), in_utf_16(text, false), "\xEF\xBB\xBF" + text}) EXPECT_EQ(import_text("lens.zmx", bytes).prescription, expected);
+  std::string with_crlf;
+  for (const char c : text) with_crlf += c == '\n' ? "\r\n" : std::string{c};
+  EXPECT_EQ(import_text("LENS.ZMX", with_crlf).prescription.substr(60), import_text("LENS.ZMX", text).prescription.substr(60));
+  const std::string latin_1 = zemax_with("COMM \xD8 5 mm\nTYPE STANDARD\nCURV 0.1\nDISZ 5");
+  EXPECT_THAT(import_text("lens.zmx", latin_1).prescription, HasSubstr("name: \"\xC3\x98 5 mm\""));
+}
+
+TEST(ZemaxFile, has_lengths_in_its_unit) {
+  std::string text = zemax_with("TYPE EVENASPH\nCURV 2.0\nPARM 2 0.1\nDISZ 0.1\nCLAP 0 0.3 0", "TYPE COORDBRK\nPARM 1 0.7\nPARM 3 5\nDISZ 0.2", "TYPE STANDARD\nCURV 0\nDISZ 1", "TYPE SZERNSAG\nCURV 0\nDISZ 1\nXDAT 1 4\nXDAT 2 2\nXDAT 6 1.0E-6");
+  text.replace(text.find("UNIT MM"), 7, "UNIT IN");
+  const Outcome run = import_text("lens.zmx", text);
+  EXPECT_THAT(run.prescription, HasSubstr("Its lengths in inches are converted to mm."));
+  EXPECT_THAT(run.prescription, HasSubstr("entrance_pupil_diameter_mm: 101.6"));
+  EXPECT_THAT(run.prescription, HasSubstr("{stop: true, thickness_mm: 25.4}"));
+  EXPECT_THAT(run.prescription, HasSubstr("asphere: {radius_mm: 12.7, coefficients: {4: 6.1"));
+  const auto read = prescription::test::read_text(run.prescription);
+  ASSERT_TRUE(read.model.has_value());
+  const auto& surfaces = read.model->surfaces;
+  ASSERT_EQ(surfaces.size(), 5u);
+  EXPECT_DOUBLE_EQ(at(surfaces[1], "coefficients", 4), 0.1 / (25.4 * 25.4 * 25.4));
+  EXPECT_EQ(surfaces[1].semi_diameter_mm, 7.62);
+  EXPECT_EQ(surfaces[1].thickness_mm, 7.62);  // with that of the coordinate break
+  EXPECT_EQ(surfaces[2].decenter_mm.x, 17.78);
+  EXPECT_EQ(surfaces[2].tilt_deg.x, 5);
+  EXPECT_EQ(surfaces[3].shape.parameters.number("normalization_radius_mm"), 50.8);
+  EXPECT_DOUBLE_EQ(at(surfaces[3], "coefficients_um", 4), 0.0254);
+}
+
+TEST(ZemaxShape, of_every_type_that_is_known) {
+  struct Case {
+    const char *lines, *expected;
+  };
+  for (const auto& [lines, expected] : {
+           Case{"TYPE STANDARD\nCURV 0.05\nCONI -1", "conic: {radius_mm: 20, conic_constant: -1}"},
+           Case{"TYPE STANDARD\nCURV 0\nCONI -1\nGLAS MIRROR 0 0 1.5 4.0E+1", "plane: {}"},
+           // PARM 1 is the r^2 coefficient
+           Case{"TYPE EVENASPH\nCURV 0.05\nPARM 1 1.0E-3\nPARM 2 2.0E-5\nPARM 8 -3.0E-20", "asphere: {radius_mm: 20, coefficients: {2: 0.001, 4: 2e-05, 16: -3e-20}}"},
+           Case{"TYPE EVENASPH\nCURV 0\nPARM 3 1.0E-3", "asphere: {radius_mm: .inf, coefficients: {6: 0.001}}"},
+           Case{"TYPE EVENASPH\nCURV 0.05\nPARM 1 0\nPARM 2 0", "conic: {radius_mm: 20}"},
+           Case{"TYPE ODDASPHE\nCURV 0.05\nCONI 1\nPARM 2 1.0E-3\nPARM 3 2.0E-4\nPARM 8 3.0E-8", "asphere: {radius_mm: 20, conic_constant: 1, coefficients: {2: 0.001, 3: 0.0002, 8: 3e-08}}"},
+           // PARM 1 is the x radius, 0 a plane
+           Case{"TYPE BICONICX\nCURV 0.05\nCONI -0.5\nPARM 1 25\nPARM 2 -0.7", "biconic: {radius_x_mm: 25, radius_y_mm: 20, conic_constant_x: -0.7, conic_constant_y: -0.5}"},
+           Case{"TYPE BICONICX\nCURV 0.05\nPARM 1 0", "biconic: {radius_x_mm: .inf, radius_y_mm: 20}"},
+           Case{"TYPE TOROIDAL\nCURV 0.02\nCONI -0.5\nPARM 1 100\nPARM 2 0.05\nPARM 3 0.0002", "toroid: {radius_rotation_mm: 100, radius_mm: 50, conic_constant: -0.5, coefficients: {2: 0.05, 4: 0.0002}}"},
+           Case{"TYPE TOROIDAL\nCURV 0.02\nPARM 1 0\nXDAT 1 0 0 0 1.0 0 0\nXDAT 2 0 0 0 1.0 0 0", "toroid: {radius_rotation_mm: .inf, radius_mm: 50}"},
+           Case{"TYPE XPOLYNOM\nCURV 0.02\nXDAT 1 5\nXDAT 2 10\nXDAT 5 1.0E-2\nXDAT 7 -2.0E-2", "xy_polynomial: {radius_mm: 50, normalization_radius_mm: 10, coefficients: {3: 0.01, 5: -0.02}}"},
+           // XDAT 1 is the number of terms, XDAT 2 the radius of normalisation, coefficients are lens units
+           Case{"TYPE SZERNSAG\nCURV 0.02\nXDAT 1 11 0 0 1.0 0 0 \"\"\nXDAT 2 3 0 0 1.0 0 0 \"\"\nXDAT 6 1.0E-3 0 0 1.0 0 0 \"\"\nXDAT 13 -2.0E-4",
+                "zernike: {radius_mm: 50, normalization_radius_mm: 3, indexing: noll, coefficients_um: {4: 1, 11: -0.2}}"},
+           Case{"TYPE FZERNSAG\nCURV 0\nXDAT 1 37\nXDAT 2 3\nXDAT 11 1.0E-3\nXDAT 39 5.0E-4", "zernike: {radius_mm: .inf, normalization_radius_mm: 3, indexing: fringe, coefficients_um: {9: 1, 37: 0.5}}"},
+           Case{"TYPE GRINSUR3\nCURV 0.05\nPARM 1 1.0\nPARM 2 1.368\nPARM 3 -0.001978\nPARM 4 1.0E-5\nPARM 6 0.049057\nPARM 7 -0.015427\nPARM 8 1.0E-6",
+                "medium: {grin: {polynomial: {index: 1.368, z_coefficients: {1: 0.049057, 2: -0.015427, 3: 1e-06}, r_coefficients: {2: -0.001978, 4: 1e-05}}}}"},
+           Case{"TYPE GRINSUR1\nCURV 0\nPARM 1 0.1\nPARM 2 1.5\nPARM 3 -0.002", "medium: {grin: {polynomial: {index: 1.5, r_coefficients: {2: -0.002}}}}"}}) {
+    const Outcome run = import_text("lens.zmx", zemax_with(std::string(lines) + "\nDISZ 5", "TYPE STANDARD\nCURV 0\nDISZ 5"));
+    EXPECT_THAT(run.prescription, HasSubstr(expected)) << run.messages;
+    EXPECT_THAT(run.messages, Not(HasSubstr("error")));
+  }
+}
+
+TEST(ZemaxGlass, is_a_medium_a_model_or_a_mirror) {
+  const auto with = [](const std::string& glass) { return import_text("lens.zmx", zemax_with("TYPE STANDARD\nCURV 0.05\nDISZ 5\nGLAS " + glass, "TYPE STANDARD\nCURV 0\nDISZ 5")); };
+  EXPECT_THAT(with("N-BK7 0 0 1.5 4.0E+1 0 0 0 0 0 0").prescription, HasSubstr("medium: N-BK7}"));
+  EXPECT_THAT(with("MIRROR 0 0 1.5 4.0E+1 0").prescription, HasSubstr("medium: mirror}"));
+  const Outcome model = with("___BLANK 1 0 1.5168 6.417E+1 0 0 0 0 0 0");
+  EXPECT_THAT(model.prescription, HasSubstr("medium: {nd: 1.5168, vd: 64.17}}"));
+  EXPECT_THAT(model.prescription, HasSubstr("two-term formulas through nd and Vd here"));
+  EXPECT_THAT(with("___BLANK 1 0 1.3777 0 0 0 0").prescription, HasSubstr("medium: {index: 1.3777}}"));
+  EXPECT_THAT(with("___BLANK 1 0 1 0 0 0 0").prescription, HasSubstr("{conic: {radius_mm: 20}, thickness_mm: 5}"));
+  const Outcome water = with("WATER 0 0 1.5 40");
+  EXPECT_THAT(water.prescription, HasSubstr("medium: water}"));
+  EXPECT_THAT(water.messages, HasSubstr("warning: 'WATER' is taken as water, whose formula may be of another source"));
+}
+
+TEST(ZemaxAperture, is_told_in_one_of_four_ways) {
+  const auto with = [](const std::string& aperture) {
+    std::string text = zemax_with("TYPE STANDARD\nCURV 0.05\nDISZ 5");
+    return import_text("lens.zmx", text.replace(text.find("ENPD 4.0E+0"), 11, aperture)).prescription;
+  };
+  EXPECT_THAT(with("ENPD 3"), HasSubstr("aperture: {entrance_pupil_diameter_mm: 3}"));
+  EXPECT_THAT(with("FNUM 2.1 0"), HasSubstr("aperture: {image_f_number: 2.1}"));
+  // FLOA: the semi-diameter of the stop; its beam is not clipped there as well
+  std::string text = zemax_with("TYPE STANDARD\nCURV 0.05\nDISZ 5\nFLAP 0 1.5 0");
+  text.replace(text.find("ENPD 4.0E+0"), 11, "FLOA");
+  text.insert(text.find("STOP\n") + 5, "  DIAM 1.5 1 0 0 1 \"\"\n  FLAP 0 1.5 0\n");
+  const std::string floating = import_text("lens.zmx", text).prescription;
+  EXPECT_THAT(floating, HasSubstr("aperture: {stop_diameter_mm: 3}"));
+  EXPECT_THAT(floating, HasSubstr("{stop: true, thickness_mm: 1}"));
+  EXPECT_THAT(floating, HasSubstr("thickness_mm: 5, semi_diameter_mm: 1.5}"));
+  text = zemax_with("TYPE STANDARD\nCURV 0.05\nDISZ 5");
+  text.replace(text.find("ENPD 4.0E+0"), 11, "OBNA 1.5E-1 0").replace(text.find("FTYP 0"), 6, "FTYP 1").replace(text.find("DISZ INFINITY"), 13, "DISZ 1.0E+2");
+  text.replace(text.find("YFLN 0"), 6, "YFLN 8");
+  const std::string finite = import_text("lens.zmx", text).prescription;
+  EXPECT_THAT(finite, HasSubstr("aperture: {object_na: 0.15}\nfields: {object_heights_mm: [[0, 8]]}\nobject: {distance_mm: 100}\n"));
+}
+
+TEST(ZemaxAperture, of_a_surface_clips_where_it_was_set) {
+  const auto with = [](const std::string& lines) { return import_text("lens.zmx", zemax_with("TYPE STANDARD\nCURV 0.05\nDISZ 5\n" + lines)).prescription; };
+  EXPECT_THAT(with("DIAM 7.6 1 0 0 1 \"\""), HasSubstr("thickness_mm: 5}"));
+  EXPECT_THAT(with("CLAP 0.5 7.6 0"), HasSubstr("thickness_mm: 5, semi_diameter_mm: 7.6, inner_semi_diameter_mm: 0.5}"));
+  EXPECT_THAT(with("CLAP 0.5 INF 0"), HasSubstr("thickness_mm: 5, inner_semi_diameter_mm: 0.5}"));
+  EXPECT_THAT(with("OBSC 0 2.5 0\nOBDC 0 0"), HasSubstr("thickness_mm: 5, inner_semi_diameter_mm: 2.5}"));
+}
+
+// A tilted and decentered lens as OpticStudio's tool makes it: the break, the lens, a surface that goes back, the inverse break, the way on.
+TEST(ZemaxCoordinateBreaks, around_an_element_are_its_decenter_and_tilt) {
+  const auto model = model_of("lens.zmx", zemax_with("TYPE COORDBRK\nPARM 1 0.3\nPARM 2 -1.7\nPARM 3 10\nPARM 4 -20\nPARM 5 33.3\nDISZ 0", "TYPE STANDARD\nCURV 0.02\nDISZ 5.6\nGLAS N-BK7",
+      "TYPE STANDARD\nCURV -0.02\nDISZ -5.6", "TYPE COORDBRK\nPARM 1 -0.3\nPARM 2 1.7\nPARM 3 -10\nPARM 4 20\nPARM 5 -33.3\nPARM 6 1\nDISZ 5.6", "TYPE STANDARD\nCURV 0\nDISZ 44"));
+  using numerics::Vec3;
+  ASSERT_EQ(model.surfaces.size(), 5u);
+  EXPECT_EQ(model.surfaces[1].decenter_mm, (Vec3<double>{0.3, -1.7, 0}));
+  EXPECT_EQ(model.surfaces[1].tilt_deg, (Vec3<double>{10, -20, 33.3}));
+  EXPECT_EQ(model.surfaces[1].thickness_mm, 5.6);
+  EXPECT_EQ(model.surfaces[2].thickness_mm, 0);
+  for (const std::size_t i : {0, 3, 4}) {
+    EXPECT_EQ(model.surfaces[i].decenter_mm, Vec3<double>{});
+    EXPECT_EQ(model.surfaces[i].tilt_deg, Vec3<double>{});
+  }
+}
+
+// The axis goes along +y behind a mirror that turns +y toward +z by 45 degrees.
+TEST(ZemaxCoordinateBreaks, turn_right_handed) {
+  const auto model = model_of("lens.zmx", zemax_with("TYPE COORDBRK\nPARM 3 45\nDISZ 0", "TYPE STANDARD\nCURV 0\nDISZ 0\nGLAS MIRROR", "TYPE COORDBRK\nPARM 3 45\nDISZ -30", "TYPE STANDARD\nCURV 0\nDISZ -2"));
+  using numerics::Vec3;
+  EXPECT_EQ(model.surfaces[1].tilt_deg, (Vec3<double>{45, 0, 0}));
+  EXPECT_EQ(model.surfaces[1].thickness_mm, -30);
+  EXPECT_EQ(model.surfaces[2].tilt_deg, (Vec3<double>{90, 0, 0}));
+  EXPECT_EQ(model.surfaces[2].decenter_mm, (Vec3<double>{0, 30, 30}));
+  EXPECT_EQ(model.surfaces[3].decenter_mm, (Vec3<double>{0, 32, 32}));
+}
+
+TEST(ZemaxFile, partly_understood_lists_what_is_left_out) {
+  const std::string text = zemax_with("TYPE GRID_SAG\nCURV 0.05\nDISZ 5\nGDAT whatever", "TYPE STANDARD\nCURV 0\nDISZ 5\nSQAP 5 5 0");
+  const Outcome refused = import_text("lens.zmx", text), partial = import_text("lens.zmx", text, true);
+  EXPECT_EQ(refused.prescription, "");
+  EXPECT_EQ(partial.left_out_count, 3);
+  const std::string list = "# Left out of that file, by line:\n#   45: a surface of type GRID_SAG is not known; its conic (CURV, CONI) stands for it\n#   48: GDAT is not known\n#   57: SQAP is not known\n";
+  EXPECT_THAT(partial.prescription, HasSubstr(list));
+  EXPECT_THAT(partial.prescription, HasSubstr("{conic: {radius_mm: 20}, thickness_mm: 5}"));
+  std::string as_warnings = refused.messages;
+  for (std::size_t at; (at = as_warnings.find(": error: ")) != std::string::npos;) as_warnings.replace(at, 9, ": warning: ");
+  EXPECT_EQ(partial.messages, as_warnings);
+}
+
+}  // namespace
+}  // namespace sagitta::lens_file::test
