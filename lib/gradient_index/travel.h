@@ -16,7 +16,7 @@
 //
 // missed         the ray leaves the medium (n is no index any more) or the neighbourhood (a thousand times the distances that there were), without a crossing
 // outside_data   likewise, where it came through a hole or beyond the points of a measured surface
-// not_converged  a step falls below rounding, a crossing cannot be settled, there are 5000 steps, or the ray has turned by 20 radians and gone five times as far as
+// not_converged  a step falls below rounding, a crossing cannot be settled, there are 5000 steps, or the ray has turned by 20 radians and gone ten times as far as
 //                it has got, with the distances that there were: it circles, and whether it ever comes is not known
 #pragma once
 
@@ -124,7 +124,7 @@ class Traveller {
     return norm(here.position) > 1000 * scale_ && sense_ * dot(here.position, here.optical_direction) > 0;
   }
 
-  bool circles() const { return turned_ > 20 && gone_ > 5 * (scale_ + size_of(from_.position)); }
+  bool circles() const { return turned_ > 20 && gone_ > 10 * (scale_ + size_of(from_.position)); }
 
   // Whether the ray crosses the surface in the step to `to`.
   Found look_within(const State<T>& to, const InMedium<T>& at_to, double h) {
