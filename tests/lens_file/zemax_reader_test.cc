@@ -172,7 +172,7 @@ TEST(ZemaxCoordinateBreaks, turn_right_handed) {
 TEST(ZemaxFile, may_go_on_with_what_has_no_optics) {
   const std::string text = zemax_with("TYPE STANDARD\nCURV 0.1\nDISZ 5");
   const Outcome run = import_text("lens.zmx", text + "EFLY 1 43 0 0\nREAY 43 1 0 1\nTOL TOFF\nCRVT 1 0.2\n");
-  EXPECT_EQ(run.messages, "lens.zmx:64:1: note: from here on 3 lines are not read: merit function, tolerances and configurations have no optics\n");
+  EXPECT_EQ(run.messages, "lens.zmx:63:1: note: from here on 3 lines are not read: merit function, tolerances and configurations have no optics\n");
   EXPECT_EQ(run.prescription, import_text("lens.zmx", text).prescription);
   // Lines of a surface that are not indented may be optics, and are not passed over.
   EXPECT_NE(import_text("lens.zmx", "UNIT MM\nENPD 2\nWAVL 0.5\nSURF 0\nSURF 1\nSTOP\nCRVT 1\nDISZ 1\nSURF 2\n").messages.find("lens.zmx:7:1: error: CRVT is not known"), std::string::npos);
