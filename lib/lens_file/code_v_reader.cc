@@ -32,7 +32,9 @@ class CodeVReader {
   CodeVReader(const std::string& file, Report& report) : file_(file), report_(report), numbers_(file, report) { lens_.program = "a CODE V sequence"; }
 
   std::optional<Lens> read(std::string_view text) {
+    int last_line = 0;
     for (Statement& statement : code_v_statements(text)) {
+      last_line = statement.words.front().line;
       take(statement);
       if (surfaces_.size() > static_cast<std::size_t>(most_surfaces)) {
         report_.broken(surfaces_.back().place, fmt::format("more than {} surfaces", most_surfaces));
@@ -40,7 +42,7 @@ class CodeVReader {
       }
     }
     if (surfaces_.size() < 3 || !has_image_) {
-      report_.broken({file_}, surfaces_.size() == 1 ? "no surface (S): not a CODE V sequence of a lens" : "the file ends before its image surface (SI), or has no surface before it");
+      report_.broken({file_, surfaces_.size() == 1 ? 0 : last_line, 1}, surfaces_.size() == 1 ? "no surface (S): not a CODE V sequence of a lens" : "the file ends before its image surface (SI), or has no surface before it");
       return std::nullopt;
     }
     finish();
@@ -178,9 +180,9 @@ class CodeVReader {
   void take_title(const Statement& statement) { lens_.title = statement.words.size() == 2 ? statement.words[1].text : statement.rest; }
   void take_unit(const Statement& statement) {
     const char letter = statement.words.size() < 2 ? ' ' : upper(statement.words[1].text).front();
+    has_unit_ = true;
     if (letter != 'M' && letter != 'C' && letter != 'I') return report_.broken(numbers_.place(statement), "DIM is not one of M (mm), C (cm), I (inches)");
     unit_ = letter == 'M' ? 1 : letter == 'C' ? 10 : 25.4L;
-    has_unit_ = true;
     if (letter != 'M') lens_.remarks.push_back(fmt::format("Its lengths in {} are converted to mm.", letter == 'C' ? "cm" : "inches"));
   }
   void take_aperture(const Statement& statement) {

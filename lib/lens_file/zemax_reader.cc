@@ -38,10 +38,10 @@ class ZemaxReader {
   ZemaxReader(const std::string& file, Report& report) : file_(file), report_(report), numbers_(file, report) { lens_.program = "a Zemax lens file"; }
 
   std::optional<Lens> read(std::string_view text) {
-    int number = 1;
-    for (std::size_t begin = 0; begin < text.size(); ++number) {
+    int number = 0;
+    for (std::size_t begin = 0; begin < text.size();) {
       const std::size_t end = std::min(text.find_first_of("\r\n", begin), text.size());
-      take_line(text.substr(begin, end - begin), number);
+      take_line(text.substr(begin, end - begin), ++number);
       if (!is_sequential_ || surfaces_.size() > static_cast<std::size_t>(most_surfaces)) break;
       begin = end + (text.substr(end).starts_with("\r\n") ? 2 : 1);
     }
@@ -51,11 +51,12 @@ class ZemaxReader {
       return std::nullopt;
     }
     if (surfaces_.size() < 3) {
-      report_.broken({file_}, surfaces_.empty() ? "no SURF: not a Zemax lens file" : "the file ends before its image surface: there is an object, at least one surface, and an image");
+      report_.broken({file_, surfaces_.empty() ? 0 : number, 1}, surfaces_.empty() ? "no SURF: not a Zemax lens file" : "the file ends before its image surface: there is an object, at least one surface, and an image");
       return std::nullopt;
     }
     if (skipped_count_ > 0)
-      report_.note(first_skipped_, fmt::format("{} lines from here on are not read: merit function, tolerances and configurations have no optics", skipped_count_));
+      report_.note(first_skipped_, fmt::format("from here on {} not read: merit function, tolerances and configurations have no optics",
+                                               skipped_count_ == 1 ? "1 line is" : fmt::format("{} lines are", skipped_count_)));
     finish();
     return std::move(lens_);
   }
@@ -95,15 +96,16 @@ class ZemaxReader {
     const auto is_it = [&](const auto& one) { return one.name == statement.name(); };
     if (const auto found = std::find_if(of_system.begin(), of_system.end(), is_it); found != of_system.end()) return (this->*found->take)(statement);
     // Behind the surfaces, whose lines are indented, the lines of other things begin in the first column again.
-    if (has_indented_lines_ && !statement.indented) {
-      if (skipped_count_++ == 0) first_skipped_ = numbers_.place(statement);
-      return;
-    }
-    if (!surfaces_.empty()) {
+    const bool is_behind = has_indented_lines_ && !statement.indented;
+    if (!surfaces_.empty() && !is_behind) {
       has_indented_lines_ |= statement.indented;
       if (const auto found = std::find_if(of_surface.begin(), of_surface.end(), is_it); found != of_surface.end()) return (this->*found->take)(statement);
     }
     if (std::find(without_optics.begin(), without_optics.end(), statement.name()) != without_optics.end()) return;
+    if (is_behind) {
+      if (skipped_count_++ == 0) first_skipped_ = numbers_.place(statement);
+      return;
+    }
     report_.left_out(numbers_.place(statement), fmt::format("{} is not known", prescription::excerpt(statement.name())));
   }
 
@@ -125,9 +127,9 @@ class ZemaxReader {
   }
   void take_unit(const Statement& statement) {
     const auto unit = statement.words.size() < 2 ? units.end() : std::find_if(units.begin(), units.end(), [&](const Unit& one) { return one.name == statement.words[1].text; });
+    has_unit_ = true;
     if (unit == units.end()) return report_.broken(numbers_.place(statement), fmt::format("UNIT '{}' is not one of MM, CM, IN, METER", prescription::excerpt(statement.rest)));
     unit_ = unit->mm;
-    has_unit_ = true;
     if (unit_ != 1) lens_.remarks.push_back(fmt::format("Its lengths in {} are converted to mm.", unit->name == "IN" || unit->name == "INCH" ? "inches" : unit->name == "CM" ? "cm" : "metres"));
   }
   void take_aperture(const Statement& statement) {

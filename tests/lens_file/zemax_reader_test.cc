@@ -17,7 +17,7 @@ TEST(ZemaxFile, becomes_a_prescription_that_reads_as_if_written_by_hand) {
       zemax_surface(0, "TYPE STANDARD\nCURV 0.0\nDISZ INFINITY") +
       zemax_surface(1, "STOP\nCOMM front, first\nTYPE STANDARD\nCURV 2.000000000000000000E-002 0 0 0 0 \"\"\nDISZ 4.0\nGLAS N-BK7 0 0 1.5 4.0E+1 0 0 0 0 0 0 \nDIAM 7.6 1 0 0 1 \"\"\nFLAP 0 7.6 0") +
       zemax_surface(2, "COMM back\nTYPE STANDARD\nCURV -1.250000000000000000E-002\nCONI -5.0E-1\nDISZ 6.0E+1\nMAZH 0 0\nDIAM 7.5 0 0 0 1 \"\"") + zemax_surface(3, "TYPE STANDARD\nCURV 0.0\nDISZ 0\nDIAM 1 0 0 0 1 \"\"")));
-  EXPECT_EQ(run.messages, "lens.zmx:69:1: note: 2 lines from here on are not read: merit function, tolerances and configurations have no optics\n");
+  EXPECT_EQ(run.messages, "");
   EXPECT_EQ(run.prescription, R"yaml(# Test lens.
 # Source: lens.zmx, a Zemax lens file (VERS 140730 201 26155), by sagitta import.
 # What clips rays in it is an aperture that was set, not the size that a surface is drawn with. Its glasses are of SCHOTT MISC.
@@ -167,6 +167,15 @@ TEST(ZemaxCoordinateBreaks, turn_right_handed) {
   EXPECT_EQ(model.surfaces[2].tilt_deg, (Vec3<double>{90, 0, 0}));
   EXPECT_EQ(model.surfaces[2].decenter_mm, (Vec3<double>{0, 30, 30}));
   EXPECT_EQ(model.surfaces[3].decenter_mm, (Vec3<double>{0, 32, 32}));
+}
+
+TEST(ZemaxFile, may_go_on_with_what_has_no_optics) {
+  const std::string text = zemax_with("TYPE STANDARD\nCURV 0.1\nDISZ 5");
+  const Outcome run = import_text("lens.zmx", text + "EFLY 1 43 0 0\nREAY 43 1 0 1\nTOL TOFF\nCRVT 1 0.2\n");
+  EXPECT_EQ(run.messages, "lens.zmx:63:1: note: from here on 3 lines are not read: merit function, tolerances and configurations have no optics\n");
+  EXPECT_EQ(run.prescription, import_text("lens.zmx", text).prescription);
+  // Lines of a surface that are not indented may be optics, and are not passed over.
+  EXPECT_NE(import_text("lens.zmx", "UNIT MM\nENPD 2\nWAVL 0.5\nSURF 0\nSURF 1\nSTOP\nCRVT 1\nDISZ 1\nSURF 2\n").messages.find("lens.zmx:7:1: error: CRVT is not known"), std::string::npos);
 }
 
 TEST(ZemaxFile, partly_understood_lists_what_is_left_out) {
