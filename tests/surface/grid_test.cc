@@ -140,6 +140,15 @@ TEST(Grid, FlattensBeyondItsRim) {
     EXPECT_TRUE(std::isnan(grid.sag(1 + beyond, .25)));
     EXPECT_TRUE(std::isnan(grid.gradient(.25, -.5 - beyond).y));
   }
+  // There second derivatives across the rim are its slopes over the width, and bounded by little more.
+  double steepest_x = 0, steepest_y = 0;
+  for (const SagGrid::Node& node : given.nodes) steepest_x = std::max(steepest_x, std::abs(node.dz_dx)), steepest_y = std::max(steepest_y, std::abs(node.dz_dy));
+  for (int k = 1; k < 5; ++k) {
+    for (const int outer : {0, 5}) {
+      EXPECT_LE(grid.cell_bends(outer, k).xx, 1.1 * steepest_x / 2);
+      EXPECT_LE(grid.cell_bends(k, outer).yy, 1.1 * steepest_y / 1);
+    }
+  }
 }
 
 // Cells that touch a node without data, and all beyond the rim: outside_data; the rim itself is not.
