@@ -130,8 +130,14 @@ void set_vertex_curvatures(const Model& model, const Clouds& clouds, Scene& scen
     for (int number = 1; number <= scene.surface_count(); ++number) {
       Surface& surface = scene.surfaces[static_cast<std::size_t>(number - 1)];
       const auto& cloud = clouds[static_cast<std::size_t>(number - 1)];
-      if (cloud) facets_of(surface.shape)->curvature = vertex_curvature(*cloud, beam_radius(number));
-      surface.vertex_curvature = std::visit([](const auto& shape) { return shape.vertex_curvature(); }, surface.shape);
+      if (cloud) {
+        const VertexCurvatures fitted = vertex_curvatures(*cloud, beam_radius(number));
+        facets_of(surface.shape)->curvature = surface.vertex_curvature = fitted.y;
+        surface.vertex_curvature_x = fitted.x;
+      } else {
+        surface.vertex_curvature = std::visit([](const auto& shape) { return shape.vertex_curvature(); }, surface.shape);
+        surface.vertex_curvature_x = vertex_curvature_x(surface.shape);
+      }
     }
   };
   set([](int) { return 0.0; });
@@ -224,8 +230,12 @@ CompileResult compile_for(const Model& model, const Beam& beam) {
   if (findings.has_errors()) return result;
   tell_of_vertices_without_points(model, waiting, scene, findings);
   scene.pupil = compile_pupil(model, scene, first_order(scene, scene.primary, 1), findings);
-  result.first_order = first_order(scene, scene.primary,
-                                   scene.pupil.telecentric ? std::numeric_limits<double>::quiet_NaN() : scene.pupil.semi_diameter);
+  const double semi_diameter = scene.pupil.telecentric ? std::numeric_limits<double>::quiet_NaN() : scene.pupil.semi_diameter;
+  result.first_order = first_order(scene, scene.primary, semi_diameter);
+  if (scene.is_astigmatic()) {
+    const double wider = first_order(scene, scene.primary, 1, Section::x).entrance_pupil.magnification / result.first_order.entrance_pupil.magnification;
+    result.first_order_x = first_order(scene, scene.primary, semi_diameter * std::abs(wider), Section::x);  // of the same stop
+  }
   if (!findings.has_errors()) compile_what_is_needed(model, beam, waiting, result, scene);
   if (!findings.has_errors()) result.scene = std::move(scene);
   return result;

@@ -333,6 +333,7 @@ Measured Subject::measure(const Variant& variant) {
   scene::Scene& scene = *prepared.compiled.scene;
   scene.pupil = parts.scene->pupil;
   scene.surfaces[at(parts.number)].vertex_curvature = parts.scene->surface(parts.number).vertex_curvature;
+  scene.surfaces[at(parts.number)].vertex_curvature_x = parts.scene->surface(parts.number).vertex_curvature_x;
   const View view = parts.view(scene);
 
   std::optional<NearestVertex> nearest;
