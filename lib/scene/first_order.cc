@@ -148,13 +148,13 @@ FirstOrder first_order(const Scene& scene, const Wavelength& wavelength, double 
 }
 
 double marginal_height(const Scene& scene, const Wavelength& wavelength, const Pupil& entrance_pupil, int surface_number) {
+  if (!scene.object.at_infinity()) return height_from_object(scene, wavelength, entrance_pupil.semi_diameter / (entrance_pupil.z - scene.object.z), surface_number);
+  return std::abs(Paraxial(scene, wavelength).up_to({entrance_pupil.semi_diameter, 0}, 1, surface_number).y);
+}
+
+double height_from_object(const Scene& scene, const Wavelength& wavelength, double tangent, int surface_number) {
   const Paraxial paraxial(scene, wavelength);
-  ParaxialRay ray{entrance_pupil.semi_diameter, 0};
-  if (!scene.object.at_infinity()) {
-    const double slope = entrance_pupil.semi_diameter / (entrance_pupil.z - scene.object.z);
-    ray = {slope * (scene.surface(1).axis_z - scene.object.z), slope * paraxial.index_before(1)};
-  }
-  return std::abs(paraxial.up_to(ray, 1, surface_number).y);
+  return std::abs(paraxial.up_to({tangent * (scene.surface(1).axis_z - scene.object.z), tangent * paraxial.index_before(1)}, 1, surface_number).y);
 }
 
 }  // namespace sagitta::scene

@@ -44,5 +44,7 @@ FirstOrder first_order(const Scene& scene, const Wavelength& wavelength, double 
 
 // Height of the paraxial marginal ray (axial object point, rim of the entrance pupil) at a surface: the beam's radius there.
 double marginal_height(const Scene& scene, const Wavelength& wavelength, const Pupil& entrance_pupil, int surface_number);
+// The same of the ray from the axial object point that starts with this tangent to the axis; finite object.
+double height_from_object(const Scene& scene, const Wavelength& wavelength, double tangent, int surface_number);
 
 }  // namespace sagitta::scene

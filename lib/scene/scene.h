@@ -79,6 +79,8 @@ struct LaunchPupil {
   double z = 0;               // of the entrance pupil, global
   double semi_diameter = 0;   // of the entrance pupil
   double edge_tangent = 0;    // telecentric only: tangent of the angle of the rim's rays
+  bool is_of_stop = false;    // pupil points are those of the stop, and rays are aimed at them
+  double stop_semi_diameter = 0;  // of the stop as that beam has it paraxially
 };
 
 struct Scene {
