@@ -129,7 +129,7 @@ bool run_parts(Stopwatch& watch) {
   for (std::vector<trace::PupilPoint> pupil; !(pupil = stream.next(1 << 13)).empty();)
     for (std::size_t i = 0; i < report.results.size(); ++i) {
       const scene::Wavelength& wavelength = scene.wavelengths[report.results[i].wavelength];
-      trace::RayBatch rays = launch(scene, scene.fields[report.results[i].field], wavelength.index.front(), pupil);
+      trace::RayBatch rays = launch(scene, scene.fields[report.results[i].field], wavelength, pupil);
       watch.lap("launch");
       trace::trace(scene, wavelength, rays, 1);
       watch.lap("trace");

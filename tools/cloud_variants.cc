@@ -43,7 +43,7 @@ std::vector<std::string> interpolations() {
 // The rays where the surface `number` leaves them.
 trace::RayBatch rays_at(const scene::Scene& scene, const scene::Field& field, const scene::Wavelength& wavelength,
                         std::span<const trace::PupilPoint> pupil, int number) {
-  trace::RayBatch rays = launch(scene, field, wavelength.index.front(), pupil);
+  trace::RayBatch rays = launch(scene, field, wavelength, pupil);
   for (int surface = 1; surface <= number; ++surface) trace_surface(scene, wavelength, surface, rays);
   return rays;
 }

@@ -72,6 +72,7 @@ bool take_rays_of(const Model& first, const scene::LaunchPupil& pupil, Model& mo
   model.fields = first.fields;
   model.aperture.kind = first.aperture.kind;
   model.aperture.value = first.aperture.value;
+  model.aperture.is_of_stop = first.aperture.is_of_stop;
   if (!pupil.telecentric) {
     model.aperture.kind = prescription::ApertureKind::entrance_pupil_diameter_mm;
     model.aperture.value = 2 * pupil.semi_diameter;

@@ -46,6 +46,7 @@ output::Report make_report(const prescription::Model& model, const scene::Compil
       report.surfaces_of_flat_facets.push_back(static_cast<int>(report.surface_names.size()));
   }
   report.first_order = compiled.first_order;
+  report.first_order_x = compiled.first_order_x;
   report.smoothing = compiled.smoothing;
   report.parts = compiled.parts;
   return report;

@@ -92,7 +92,7 @@ class Listing {
     for (int surface = 1; surface <= scene_.surface_count(); ++surface) {
       const RayBatch& rays = tracing.next();
       for (std::size_t i = 0; i < rays.size(); ++i) {
-        if (!travels[i]) continue;
+        if (!travels[i] || launched.rays.ended_at(i) > surface) continue;  // one that could not be aimed has a row at the stop
         travels[i] = rays.ended[i] == 0;
         const Vec3<double> p = global_position(scene_, surface, rays, i), d = global_direction(scene_, surface, rays, i);
         fmt::format_to(std::back_inserter(rows[i]),
@@ -148,11 +148,11 @@ int print_launched(const RaysOptions& options, prescription::Model model, std::s
   return print_rays(model, [&](const scene::Scene& scene, const auto& take) {
     for (std::size_t field = 0; field < scene.fields.size(); ++field) {
       if (options.field && field != static_cast<std::size_t>(*options.field)) continue;
-      for (std::size_t w = 0; w < scene.wavelengths.size(); ++w)
-        for (std::size_t from = 0; from < pupil.size(); from += most_at_once) {
-          const auto part = pupil.subspan(from, std::min(most_at_once, pupil.size() - from));
-          take({launch(scene, scene.fields[field], scene.wavelengths[w].index.front(), part), field, w});
-        }
+      for (std::size_t w = 0; w < scene.wavelengths.size(); ++w) {
+        const trace::Launcher launcher(scene, scene.fields[field], scene.wavelengths[w]);
+        for (std::size_t from = 0; from < pupil.size(); from += most_at_once)
+          take({launcher(pupil.subspan(from, std::min(most_at_once, pupil.size() - from))), field, w});
+      }
     }
   });
 }

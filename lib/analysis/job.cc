@@ -39,14 +39,24 @@ double round_up(double value) {
   return 10 * decade;
 }
 
-// Without OPL, which spots do not need.
-trace::RayBatch traced(const scene::Scene& scene, std::size_t field, std::size_t w, std::span<const trace::PupilPoint> pupil,
-                       int thread_count) {
-  const scene::Wavelength& wavelength = scene.wavelengths[w];
-  trace::RayBatch rays = launch(scene, scene.fields[field], wavelength.index.front(), pupil, false);
-  trace::trace(scene, wavelength, rays, thread_count);
-  return rays;
-}
+// The launchers of a scene, field by field, each with all wavelengths.
+struct Launchers {
+  Launchers(const scene::Scene& given, int thread_count) : scene(given), of(given.fields.size() * given.wavelengths.size()) {
+    numerics::share_blocks(of.size(), thread_count, [&] {
+      return [&](std::size_t i) { of[i].emplace(scene, scene.fields[i / scene.wavelengths.size()], scene.wavelengths[i % scene.wavelengths.size()]); };
+    });
+  }
+
+  // Without OPL, which spots do not need.
+  trace::RayBatch traced(std::size_t field, std::size_t w, std::span<const trace::PupilPoint> pupil, int thread_count) const {
+    trace::RayBatch rays = (*of[field * scene.wavelengths.size() + w])(pupil, false, thread_count);
+    trace::trace(scene, scene.wavelengths[w], rays, thread_count);
+    return rays;
+  }
+
+  const scene::Scene& scene;
+  std::vector<std::optional<trace::Launcher>> of;
+};
 
 // Where the spots of a scene's fields are, each about the first wavelength that brings rays, and how far they all reach
 // from there. A perfect image still has a size to draw: a nanometre.
@@ -59,12 +69,12 @@ struct SpotFrames {
 };
 
 // Whether the rays of any wavelength arrived.
-bool frame_spots(const scene::Scene& scene, std::size_t field, std::span<const trace::PupilPoint> pupil, SpotFrames& frames) {
+bool frame_spots(const Launchers& launchers, std::size_t field, std::span<const trace::PupilPoint> pupil, SpotFrames& frames) {
   SpotFrames::Centre& centre = frames.centres[field];
   bool centred = false;
-  for (std::size_t w = 0; w < scene.wavelengths.size(); ++w) {
+  for (std::size_t w = 0; w < launchers.scene.wavelengths.size(); ++w) {
     SpotCollector collector(SpotImage(2, 1, 0, 0));
-    const trace::RayBatch rays = traced(scene, field, w, pupil, 1);
+    const trace::RayBatch rays = launchers.traced(field, w, pupil, 1);
     collector.add(rays);
     const Spot spot = collector.spot();
     if (spot.rays[Status::ok] == 0) continue;
@@ -78,14 +88,14 @@ bool frame_spots(const scene::Scene& scene, std::size_t field, std::span<const t
 
 // By the pilot rays; where none of a field arrives, by the first of the job's own rays that do, for sums about a place far from
 // the spot would lose its digits.
-SpotFrames spot_frames(const scene::Scene& scene, const JobRequest& request) {
+SpotFrames spot_frames(const Launchers& launchers, const JobRequest& request) {
   const std::vector<trace::PupilPoint> pilot = pilot_points();
-  SpotFrames frames{std::vector<SpotFrames::Centre>(scene.fields.size())};
-  for (std::size_t field = 0; field < scene.fields.size(); ++field) {
-    if (frame_spots(scene, field, pilot, frames)) continue;
+  SpotFrames frames{std::vector<SpotFrames::Centre>(launchers.scene.fields.size())};
+  for (std::size_t field = 0; field < launchers.scene.fields.size(); ++field) {
+    if (frame_spots(launchers, field, pilot, frames)) continue;
     trace::PupilStream stream(request.pattern, request.ray_count);
     for (std::vector<trace::PupilPoint> pupil; !(pupil = stream.next(batch_size)).empty();)
-      if (frame_spots(scene, field, pupil, frames)) break;
+      if (frame_spots(launchers, field, pupil, frames)) break;
   }
   return frames;
 }
@@ -128,7 +138,7 @@ scene::Beam beam_of_job(std::optional<scene::LaunchPupil> pupil) {
     const std::vector<trace::PupilPoint> points = pilot_points();
     for (std::size_t field = 0; field < scene.fields.size(); ++field)
       for (std::size_t w = 0; w < scene.wavelengths.size(); ++w)
-        take({launch(launching, scene.fields[field], scene.wavelengths[w].index.front(), points, false), field, w});
+        take({launch(launching, scene.fields[field], scene.wavelengths[w], points, false), field, w});
   });
 }
 
@@ -150,10 +160,12 @@ std::vector<std::vector<JobResult>> run_jobs(std::span<const scene::Scene> scene
   }
 
   if (request.want_spot) {
+    std::vector<Launchers> launchers;
     std::vector<SpotFrames> frames;
     double half_width = 0;
     for (const scene::Scene& scene : scenes) {
-      frames.push_back(spot_frames(scene, request));
+      launchers.emplace_back(scene, request.thread_count);
+      frames.push_back(spot_frames(launchers.back(), request));
       half_width = std::max(half_width, frames.back().half_width);
     }
     const double first_pixel = 2 * round_up(half_width) / request.spot_image_size;
@@ -178,7 +190,8 @@ std::vector<std::vector<JobResult>> run_jobs(std::span<const scene::Scene> scene
         return [&](std::size_t i) {
           const auto& [scene, result] = tasks[i];
           for (std::size_t from = 0; from < pupil.size(); from += batch) {
-            const trace::RayBatch rays = traced(*scene, result->field, result->wavelength, std::span(pupil).subspan(from, std::min(batch, pupil.size() - from)), threads_of_task);
+            const trace::RayBatch rays = launchers[static_cast<std::size_t>(scene - scenes.data())].traced(
+                result->field, result->wavelength, std::span(pupil).subspan(from, std::min(batch, pupil.size() - from)), threads_of_task);
             collectors[i].add(rays);
             if (angular_collectors[i]) angular_collectors[i]->add(rays);
           }

@@ -46,7 +46,7 @@ trace::RayBatch sample_ray(const scene::Scene& open) {
   trace::RayBatch first;
   for (const trace::PupilPoint& point : points)
     for (const scene::Field& field : open.fields) {
-      const trace::RayBatch launched = trace::launch(open, field, wavelength.index.front(), {&point, 1});
+      const trace::RayBatch launched = trace::launch(open, field, wavelength, {&point, 1});
       trace::RayBatch traced = launched;
       trace::trace(open, wavelength, traced);
       if (traced.ended[0] == 0) return launched;
@@ -62,7 +62,7 @@ std::optional<double> mean_gradient_steps(const scene::Scene& open, int number) 
   if (!gap) return std::nullopt;
   int count = 0, steps = 0;
   for (const scene::Field& field : open.fields) {
-    trace::RayBatch rays = trace::launch(open, field, wavelength.index.front(), trace::pupil_points({trace::PatternKind::hexapolar}, 60), false);
+    trace::RayBatch rays = trace::launch(open, field, wavelength, trace::pupil_points({trace::PatternKind::hexapolar}, 60), false);
     for (int before = 1; before < number; ++before) trace_surface(open, wavelength, before, rays);
     const scene::Surface& surface = open.surface(number);
     for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -210,6 +210,7 @@ class LeftOut {
   std::vector<Omission> all() && {
     outputs();
     optical_paths();
+    aiming();
     shapes();
     surfaces();
     if (const int count = compiled_.dispersive_gaps; count > 0)
@@ -250,6 +251,16 @@ class LeftOut {
                     add(request_.want_wavefront ? "optical path lengths of the spots' rays" : "optical path lengths",
                         request_.want_wavefront ? "spots do not need them" : "only spots are asked for", saves.empty() ? bytes : saves + ", " + bytes);
                   });
+  }
+
+  // The least that aiming would take: the way to the stop, once more.
+  void aiming() {
+    const scene::Scene& scene = *compiled_.scene;
+    if (scene.pupil.is_of_stop) return;
+    Operations sum;
+    for (const Passage& at : passages_)
+      if (at.number <= scene.stop && at.is_reached) sum = sum + (at.is_passed_by ? operations_of_passing_by(at) : operations_of(at, way_of(at, false)));
+    add(fmt::format("aiming at the stop, surface {}", scene.stop), "pupil points are those of the paraxial entrance pupil", text_of(sum) + ", or a multiple");
   }
 
   // Kernels for more than the surface is.
@@ -330,6 +341,18 @@ class LeftOut {
   std::vector<Omission> found_;
 };
 
+AimPlan aim_plan(const scene::Scene& scene) {
+  AimPlan plan{scene.stop};
+  const std::vector<trace::PupilPoint> pupil = trace::pupil_points({trace::PatternKind::hexapolar}, 1000);
+  const double per_field = 1 / static_cast<double>(scene.fields.size());
+  for (const scene::Field& field : scene.fields) {
+    const trace::Launcher launcher(scene, field, scene.wavelengths.front());
+    plan.passes_per_ray += per_field * static_cast<double>(launcher.at_entrance_pupil(pupil).passes) / static_cast<double>(pupil.size());
+    plan.passes_before += per_field * static_cast<double>(launcher.aim()->passes_before());
+  }
+  return plan;
+}
+
 }  // namespace
 
 Plan plan_of(const scene::CompileResult& compiled, const JobRequest& request) {
@@ -342,6 +365,7 @@ Plan plan_of(const scene::CompileResult& compiled, const JobRequest& request) {
     if (at.is_reached) one.operations = at.is_passed_by ? operations_of_passing_by(at) : operations_of(at, way_of(at, plan.has_opl));
     plan.surfaces.push_back(std::move(one));
   }
+  if (compiled.scene->pupil.is_of_stop) plan.aim = aim_plan(*compiled.scene);
   plan.left_out = LeftOut(compiled, request, passages).all();
   return plan;
 }

@@ -33,9 +33,17 @@ struct Omission {
   std::string what, why, saves;
 };
 
+// What it takes to aim at the stop (trace/aim.h), of a sample of each field at the first wavelength.
+struct AimPlan {
+  int stop = 0;                  // number of the surface
+  double passes_per_ray = 0;     // of the ray up to the stop, before it is launched
+  double passes_before = 0;      // of other rays, for each field and wavelength, to begin with
+};
+
 struct Plan {
   bool has_opl = false;  // in `surfaces`: OPL is counted where wavefronts are asked for
   std::vector<SurfacePlan> surfaces;
+  std::optional<AimPlan> aim;  // none: rays are not aimed
   std::vector<Omission> left_out;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lib/analysis/refraction.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -22,9 +23,9 @@ struct LineOfSight {
   double vergence = 0;  // of the light that arrives, 1/mm
 };
 
-LineOfSight line_of_sight(const scene::Scene& scene, const scene::Field& field, double index) {
+LineOfSight line_of_sight(const scene::Scene& scene, const scene::Field& field, const trace::PupilPoint& chief, double index) {
   LineOfSight line;
-  line.centre = {0, 0, scene.pupil.z};
+  line.centre = {chief.x * scene.pupil.semi_diameter, chief.y * scene.pupil.semi_diameter, scene.pupil.z};
   if (scene.object.at_infinity()) {
     line.d = normalized(Vec3<double>{field.x, field.y, 1});
   } else {
@@ -71,17 +72,30 @@ Power by_terms_at_centre(const std::vector<double>& osa_um, double pupil_radius)
   return {scale * (of[1] + of[2]), scale * of[0], scale * (of[1] - of[2])};
 }
 
+// Where rays are aimed, terms are over the stop, and the entrance pupil is that as it is seen: H over points p of the stop, in units of its semi-diameter, becomes
+// that over points q of the entrance pupil in units of the paraxial one's, by q's differences over +-`width`. None where one of these rays is not found.
+std::optional<Power> over_entrance_pupil(const trace::Launcher& launcher, double width, const Power& H) {
+  if (!launcher.aim()) return H;
+  const trace::AimedPupil at = launcher.at_entrance_pupil(std::vector<trace::PupilPoint>{{width, 0}, {-width, 0}, {0, width}, {0, -width}});
+  if (std::find(at.found.begin(), at.found.end(), false) != at.found.end()) return std::nullopt;
+  const auto slope = [&](std::size_t i) { return trace::PupilPoint{(at.points[i].x - at.points[i + 1].x) / (2 * width), (at.points[i].y - at.points[i + 1].y) / (2 * width)}; };
+  const auto [a, b] = trace::PlaneSlopes{slope(0), slope(2)}.inverse();  // dp/dq, column by column
+  const auto form = [&](const trace::PupilPoint& p, const trace::PupilPoint& q) { return H.uu * p.x * q.x + H.uv * (p.x * q.y + p.y * q.x) + H.vv * p.y * q.y; };
+  return Power{form(a, a), form(a, b), form(b, b)};
+}
+
 constexpr double pupil_step = .05;  // h of (5) and of the differences of (6), of the pupil's radius
 
 // (5), along 0, 45, 90 and 135 degrees.
-std::optional<Power> by_curvature(const scene::Scene& scene, const scene::Wavelength& wavelength, const scene::Field& field, const ReferenceSphere<double>& sphere) {
+std::optional<Power> by_curvature(const scene::Scene& scene, const scene::Wavelength& wavelength, const scene::Field& field, const trace::PupilPoint& chief,
+                                  const ReferenceSphere<double>& sphere) {
   std::vector<trace::PupilPoint> points;
   for (int eighth = 0; eighth < 8; ++eighth) {
     const double at = eighth * std::numbers::pi / 4;
-    for (const double h : {pupil_step, 2 * pupil_step}) points.push_back({h * std::cos(at), h * std::sin(at)});
+    for (const double h : {pupil_step, 2 * pupil_step}) points.push_back({chief.x + h * std::cos(at), chief.y + h * std::sin(at)});
   }
-  points.push_back({0, 0});
-  RayBatch rays = launch(scene, field, wavelength.index.front(), points);
+  points.push_back(chief);
+  RayBatch rays = launch(scene, field, wavelength.index.front(), points);  // in the entrance pupil
   trace::trace(scene, wavelength, rays);
   std::vector<double> W;
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -153,8 +167,10 @@ RefractionResult refraction(const scene::Scene& scene, const scene::Wavelength& 
   const ReferenceResult reference = reference_sphere(scene, wavelength, field);
   if (!reference.reason.empty()) return {{}, reference.reason};
   const double index = wavelength.index.front();
-  const LineOfSight line = line_of_sight(scene, field, index);
-  const auto curvature = by_curvature(scene, wavelength, field, reference.sphere);
+  const trace::Launcher launcher(scene, field, wavelength);
+  const trace::PupilPoint chief = launcher.at_entrance_pupil(std::vector<trace::PupilPoint>{{0, 0}}).points.front();
+  const LineOfSight line = line_of_sight(scene, field, chief, index);
+  const auto curvature = by_curvature(scene, wavelength, field, chief, reference.sphere);
   const auto far_point = by_far_point(scene, wavelength, line);
   if (!curvature || !far_point) return {{}, "a ray near the chief ray is lost"};
 
@@ -169,8 +185,12 @@ RefractionResult refraction(const scene::Scene& scene, const scene::Wavelength& 
   const WavefrontResult measured = wavefront(scene, wavelength, field, for_fit);
   if (measured.wavefront && measured.wavefront->zernike) {
     const std::vector<double>& terms = measured.wavefront->zernike->coefficients;
-    result.least_squares = reported(wanted(line, across(line, by_least_squares(terms, scene.pupil.semi_diameter))));
-    result.at_centre = reported(wanted(line, across(line, by_terms_at_centre(terms, scene.pupil.semi_diameter))));
+    const auto reported_of = [&](const Power& H, double width) -> std::optional<Power> {
+      const auto of_pupil = over_entrance_pupil(launcher, width, H);
+      return of_pupil ? std::optional(reported(wanted(line, across(line, *of_pupil)))) : std::nullopt;
+    };
+    result.least_squares = reported_of(by_least_squares(terms, scene.pupil.semi_diameter), 1);
+    result.at_centre = reported_of(by_terms_at_centre(terms, scene.pupil.semi_diameter), 1e-3);
   }
   return {result, {}};
 }

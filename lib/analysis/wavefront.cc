@@ -66,7 +66,7 @@ ReferenceResult reference_sphere(const scene::Scene& scene, const scene::Wavelen
   if (!(std::abs(paraxial.image_z) <= afocal_distance)) return {{}, exit_pupil_z, "the image is afocal"};
   if (wavelength.gradient(scene.surface_count() - 1))
     return {{}, exit_pupil_z, "the image ends a gradient-index medium, which has no one index for a reference sphere: end the medium at a surface before it"};
-  RayBatch chief = launch(scene, field, wavelength.index.front(), std::vector<trace::PupilPoint>{{0, 0}});
+  RayBatch chief = launch(scene, field, wavelength, std::vector<trace::PupilPoint>{{0, 0}});
   trace::trace(without_obscurations(scene), wavelength, chief);
   if (chief.ended[0] != 0)
     return {{}, exit_pupil_z, fmt::format("the chief ray is lost: {} at surface {}",
@@ -87,7 +87,7 @@ WavefrontResult wavefront(const scene::Scene& scene, const scene::Wavelength& wa
   Wavefront result;
   result.size = request.size;
   const std::vector<trace::PupilPoint> points = grid_points(request.size, result.mask);
-  RayBatch rays = launch(scene, field, wavelength.index.front(), points);
+  RayBatch rays = trace::Launcher(scene, field, wavelength)(points, true, request.thread_count);
   trace::trace(scene, wavelength, rays, request.thread_count);
   const ReferenceResult reference = reference_sphere(scene, wavelength, field);
   if (!reference.reason.empty()) return {{}, reference.reason, count_statuses(rays)};

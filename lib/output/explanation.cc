@@ -34,6 +34,8 @@ ordered_json plan_json(const Report& report) {
                                 {"data_bytes", one.data_bytes}});
     if (one.gradient_steps) json["surfaces"].back()["gradient_steps"] = *one.gradient_steps;
   }
+  if (const auto& aim = report.plan->aim)
+    json["aiming"] = {{"stop", aim->stop}, {"passes_to_stop_per_ray", aim->passes_per_ray}, {"passes_before_per_field_and_wavelength", aim->passes_before}};
   for (const analysis::Omission& one : report.plan->left_out)
     json["left_out"].push_back({{"what", one.what}, {"why", one.why}, {"saves", one.saves}});
   return json;
@@ -72,8 +74,12 @@ std::string explanation_text(const Report& report) {
 
   Table left_out{{{"left out", "", true}, {"why", "", true}, {"saves", "", true}}, {}};
   for (const analysis::Omission& one : plan.left_out) left_out.rows.push_back({one.what, one.why, one.saves});
-  return fmt::format("{}\noperations of one ray, {} optical path length\n\n{}\n{}", printable(report.system, 200), plan.has_opl ? "with its" : "without",
-                     to_text(table), to_text(left_out));
+  std::string aiming;
+  if (plan.aim)
+    aiming = fmt::format("\nbefore it is launched each ray is traced to the stop, surface {}, {:.1f} times to aim it, and {:.0f} rays of each field and wavelength before all\n", plan.aim->stop,
+                         plan.aim->passes_per_ray, plan.aim->passes_before);
+  return fmt::format("{}\noperations of one ray, {} optical path length\n\n{}{}\n{}", printable(report.system, 200), plan.has_opl ? "with its" : "without", to_text(table), aiming,
+                     to_text(left_out));
 }
 
 }  // namespace sagitta::output

@@ -34,6 +34,7 @@ struct Report {
   std::vector<std::string> surface_names;     // [0] of surface 1
   std::vector<int> surfaces_of_flat_facets;   // their numbers: wavefronts behind one are of no use, which is said
   scene::FirstOrder first_order;              // at the primary wavelength
+  std::optional<scene::FirstOrder> first_order_x;  // of the x-z section, where that is another
   std::map<int, scene::Smoothing> smoothing;  // by the number of the surface
   std::vector<scene::CloudPart> parts;        // of clouds, that were enough for the rays
   std::optional<analysis::Plan> plan;         // of the job

@@ -18,16 +18,22 @@ ordered_json pupil_json(const scene::Pupil& pupil) {
   return {{"z_mm", pupil.z}, {"semi_diameter_mm", pupil.semi_diameter}};
 }
 
-ordered_json first_order_json(const scene::FirstOrder& paraxial) {
-  return {{"effective_focal_length_mm", paraxial.effective_focal_length},
-          {"rear_focal_length_mm", paraxial.rear_focal_length},
-          {"back_focal_length_mm", paraxial.back_focal_length},
-          {"entrance_pupil", pupil_json(paraxial.entrance_pupil)},
-          {"exit_pupil", pupil_json(paraxial.exit_pupil)},
-          {"front_focal_length_mm", paraxial.front_focal_length},
-          {"focal_points_z_mm", {paraxial.front_focal_point, paraxial.rear_focal_point}},
-          {"principal_points_z_mm", {paraxial.front_principal_point, paraxial.rear_principal_point}},
-          {"nodal_points_z_mm", {paraxial.front_nodal_point, paraxial.rear_nodal_point}}};
+ordered_json first_order_json(const Report& report) {
+  const scene::FirstOrder& paraxial = report.first_order;
+  ordered_json json{{"effective_focal_length_mm", paraxial.effective_focal_length},
+                    {"rear_focal_length_mm", paraxial.rear_focal_length},
+                    {"back_focal_length_mm", paraxial.back_focal_length},
+                    {"entrance_pupil", pupil_json(paraxial.entrance_pupil)},
+                    {"exit_pupil", pupil_json(paraxial.exit_pupil)},
+                    {"front_focal_length_mm", paraxial.front_focal_length},
+                    {"focal_points_z_mm", {paraxial.front_focal_point, paraxial.rear_focal_point}},
+                    {"principal_points_z_mm", {paraxial.front_principal_point, paraxial.rear_principal_point}},
+                    {"nodal_points_z_mm", {paraxial.front_nodal_point, paraxial.rear_nodal_point}}};
+  if (report.first_order_x) {
+    json["entrance_pupil_x"] = pupil_json(report.first_order_x->entrance_pupil);
+    json["exit_pupil_x"] = pupil_json(report.first_order_x->exit_pupil);
+  }
+  return json;
 }
 
 // What smoothing did to the points of each surface that asks for it.
@@ -134,7 +140,7 @@ ordered_json place_json(const Report& report, const analysis::JobResult& result)
 ordered_json report_json(const Report& report) {
   ordered_json json{{"system", report.system},
                     {"version", report.version},
-                    {"first_order", first_order_json(report.first_order)},
+                    {"first_order", first_order_json(report)},
                     {"results", ordered_json::array()}};
   for (const auto& [name, value] : report.parameters) json["parameters"][name] = value;
   if (!report.smoothing.empty()) json["smoothing"] = smoothing_json(report);
@@ -215,9 +221,10 @@ std::string summary_text(const Report& report) {
   }
   if (const std::string note = facets_note(report); !note.empty()) below += note + "\n";
   const scene::FirstOrder& paraxial = report.first_order;
-  return fmt::format("{}\neffective focal length {} mm, back focal length {} mm, entrance pupil {} mm wide at z = {} mm\n\n{}{}{}",
+  const auto of_pupil = [](const scene::Pupil& pupil) { return fmt::format("{} mm wide at z = {} mm", significant(2 * pupil.semi_diameter), significant(pupil.z)); };
+  return fmt::format("{}\neffective focal length {} mm, back focal length {} mm, entrance pupil {}{}\n\n{}{}{}",
                      printable(report.system, 200), significant(paraxial.effective_focal_length), significant(paraxial.back_focal_length),
-                     significant(2 * paraxial.entrance_pupil.semi_diameter), significant(paraxial.entrance_pupil.z),
+                     of_pupil(paraxial.entrance_pupil), report.first_order_x ? ", of the x section " + of_pupil(report.first_order_x->entrance_pupil) : "",
                      to_text(table), below.empty() ? "" : "\n", below);
 }
 

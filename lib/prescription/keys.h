@@ -3,6 +3,7 @@
 // from here; the keys of the shapes stand with the shapes (lib/surface/).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <span>
@@ -84,6 +85,18 @@ inline constexpr std::array aperture_keys{
     numerics::Key{.name = "object_na",
                   .meaning = "index times sine of the half angle at the object; finite object only",
                   .range = numerics::positive}};
+
+// Beside one of them.
+inline constexpr std::array aim_keys{
+    numerics::Key{.name = "aim",
+                  .kind = numerics::ValueKind::text,
+                  .meaning = "what pupil points stand for: the paraxial entrance pupil, or the stop, at which every ray is then aimed",
+                  .choices = "entrance_pupil|stop"}};
+inline constexpr auto aperture_section_keys = [] {
+  std::array<numerics::Key, aperture_keys.size() + aim_keys.size()> all;
+  std::copy(aim_keys.begin(), aim_keys.end(), std::copy(aperture_keys.begin(), aperture_keys.end(), all.begin()));
+  return all;
+}();
 
 // Exactly one of them, in the order of FieldKind; a list of pairs [x, y].
 inline constexpr std::array field_keys{

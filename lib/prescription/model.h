@@ -24,6 +24,7 @@ enum class ApertureKind { entrance_pupil_diameter_mm, stop_diameter_mm, image_f_
 struct Aperture {
   ApertureKind kind = ApertureKind::entrance_pupil_diameter_mm;
   double value = 0;
+  bool is_of_stop = false;  // aim: stop
   Place place;
 };
 

@@ -56,13 +56,13 @@ std::vector<double> read_wavelengths(const YamlNode& node, Findings& findings) {
 }
 
 Aperture read_aperture(const YamlNode& node, Findings& findings) {
-  const Section section(node, "aperture", aperture_keys, findings);
+  const Section section(node, "aperture", aperture_section_keys, findings);
   const YamlNode::Entry* given = section.one_of(aperture_keys, true);
   Aperture aperture;
   if (!given) return aperture;
   // A value that is not legal is reported here, and gives no further finding: 0 is less than any index.
   aperture = {kind_of<ApertureKind>(given->key, aperture_keys), section.number(given->key).value_or(0),
-              given->value->place};
+              section.text("aim").value_or("") == "stop", given->value->place};
   return aperture;
 }
 

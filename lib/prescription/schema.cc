@@ -107,7 +107,7 @@ ordered_json special(const Key& key) {
   if (key.name == "parameters") return parameters_schema();
   if (key.name == "catalogs") return list_of({{"type", "string"}, {"minLength", 1}}, 1);
   if (key.name == "grin") return gradient_schema();
-  if (key.name == "aperture") return with_one_of(mapping(aperture_keys), aperture_keys);
+  if (key.name == "aperture") return with_one_of(mapping(aperture_section_keys), aperture_keys);
   if (key.name == "fields") return with_one_of(mapping(field_keys), field_keys);
   if (key.name == "angles_deg" || key.name == "object_heights_mm") return list_of(tuple_of(key.range, 2), 1);
   if (key.name == "object") return mapping(object_keys);

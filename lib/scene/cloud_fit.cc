@@ -13,9 +13,9 @@ namespace {
 
 using numerics::Vec3;
 
-// y-z second derivative at the origin of the fitted polynomial in (x, y) of the given degree.
+// Second derivatives at the origin of the fitted polynomial in (x, y) of the given degree.
 template <class Indices>
-std::optional<double> second_derivative(const std::vector<Vec3<double>>& points, const Indices& used, double scale, int degree) {
+std::optional<VertexCurvatures> second_derivatives(const std::vector<Vec3<double>>& points, const Indices& used, double scale, int degree) {
   LeastSquares fit((degree + 1) * (degree + 2) / 2);
   for (const std::uint32_t i : used) {
     auto row = fit.next_row();
@@ -30,7 +30,8 @@ std::optional<double> second_derivative(const std::vector<Vec3<double>>& points,
   }
   const auto solution = fit.solve();
   if (!solution) return std::nullopt;
-  return 2 * (*solution)(2) / scale / scale;  // terms run 1, y, y^2, ...
+  const auto per_square = [&](Eigen::Index of) { return 2 * (*solution)(of) / scale / scale; };
+  return VertexCurvatures{per_square(2 * degree + 1), per_square(2)};  // terms run 1, y, y^2, ..., x, x y, ..., x^2, ...
 }
 
 // A radius about the origin within which there are likely `count` points and more, by a sample of them; infinite where the
@@ -76,7 +77,7 @@ surface::BaseSphere fit_base_sphere(const std::vector<Vec3<double>>& all_points,
   return {0, 0, 0, mean};
 }
 
-double vertex_curvature(const prescription::PointCloud& cloud, double beam_radius) {
+VertexCurvatures vertex_curvatures(const prescription::PointCloud& cloud, double beam_radius) {
   const auto& points = cloud.points;
   const auto distance = [&](std::uint32_t i) { return std::hypot(points[i].x, points[i].y); };
   // Those within a radius, by passes that read on and do little: of a large cloud all but a few are far away.
@@ -107,12 +108,13 @@ double vertex_curvature(const prescription::PointCloud& cloud, double beam_radiu
     double scale = 0;
     for (const std::uint32_t i : used) scale = std::max(scale, distance(i));
     if (!(scale > 0)) break;
-    if (const auto found = second_derivative(points, used, scale, 4)) return *found;
+    if (const auto found = second_derivatives(points, used, scale, 4)) return *found;
     if (count < near.size() || reach < all) continue;
-    if (const auto found = second_derivative(points, used, scale, 2)) return *found;
+    if (const auto found = second_derivatives(points, used, scale, 2)) return *found;
     break;
   }
-  return std::numeric_limits<double>::quiet_NaN();
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  return {none, none};
 }
 
 }  // namespace sagitta::scene

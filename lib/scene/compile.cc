@@ -111,6 +111,10 @@ LaunchPupil compile_pupil(const Model& model, const Scene& scene, const FirstOrd
       break;
     }
   }
+  result.is_of_stop = model.aperture.is_of_stop;
+  if (model.aperture.kind == ApertureKind::stop_diameter_mm) result.stop_semi_diameter = value / 2;
+  else if (result.telecentric) result.stop_semi_diameter = scene.object.at_infinity() ? 0 : height_from_object(scene, scene.primary, result.edge_tangent, scene.stop);
+  else result.stop_semi_diameter = std::abs(result.semi_diameter / entrance.magnification);
   if (!findings.has_errors() && !result.telecentric && !std::isfinite(result.semi_diameter))
     findings.error(model.aperture.place, "the entrance pupil has no finite size");
   const bool by_na_and_height = model.aperture.kind == ApertureKind::object_na &&
@@ -120,6 +124,8 @@ LaunchPupil compile_pupil(const Model& model, const Scene& scene, const FirstOrd
                    "a telecentric beam takes object_na and object_heights_mm");
   else if (!result.telecentric && !scene.object.at_infinity() && entrance.z == scene.object.z)
     findings.error(model.object.place, "the object lies in the entrance pupil", "move the object or the stop");
+  else if (!findings.has_errors() && result.is_of_stop && !(result.stop_semi_diameter > 0 && std::isfinite(result.stop_semi_diameter)))
+    findings.error(model.aperture.place, "the beam has no size at the stop to aim at", "give stop_diameter_mm, or leave out aim");
   return result;
 }
 
@@ -131,8 +137,14 @@ void set_vertex_curvatures(const Model& model, const Clouds& clouds, Scene& scen
     for (int number = 1; number <= scene.surface_count(); ++number) {
       Surface& surface = scene.surfaces[static_cast<std::size_t>(number - 1)];
       const auto& cloud = clouds[static_cast<std::size_t>(number - 1)];
-      if (cloud) facets_of(surface.shape)->curvature = vertex_curvature(*cloud, beam_radius(number));
-      surface.vertex_curvature = std::visit([](const auto& shape) { return shape.vertex_curvature(); }, surface.shape);
+      if (cloud) {
+        const VertexCurvatures fitted = vertex_curvatures(*cloud, beam_radius(number));
+        facets_of(surface.shape)->curvature = surface.vertex_curvature = fitted.y;
+        surface.vertex_curvature_x = fitted.x;
+      } else {
+        surface.vertex_curvature = std::visit([](const auto& shape) { return shape.vertex_curvature(); }, surface.shape);
+        surface.vertex_curvature_x = vertex_curvature_x(surface.shape);
+      }
     }
   };
   set([](int) { return 0.0; });
@@ -193,11 +205,15 @@ CompileResult compile_for(const Model& model, const Beam& beam) {
   scene.fields = compile_fields(model.fields);
   Clouds clouds(model.surfaces.size());
   std::vector<int> waiting;  // for the beam
+  const auto is_stop = [](const prescription::Surface& one) { return one.stop; };
+  const int stop = 1 + static_cast<int>(std::find_if(model.surfaces.begin(), model.surfaces.end(), is_stop) - model.surfaces.begin());
+  scene.stop = stop;
   for (std::size_t i = 0; i < model.surfaces.size(); ++i) {
     const prescription::Surface& given = model.surfaces[i];
     const int number = static_cast<int>(i) + 1;
     Surface& surface = scene.surfaces[i];
-    if (given.shape.cloud && beam && may_be_a_part(given.shape) && !scene.primary.gradient(number - 1)) {  // whose lines are straight
+    // Lines are straight; and where rays are aimed through it, whole.
+    if (given.shape.cloud && beam && may_be_a_part(given.shape) && !scene.primary.gradient(number - 1) && !(model.aperture.is_of_stop && number <= stop)) {
       surface.shape = surface::Facets{};
       clouds[i] = given.shape.cloud;
       waiting.push_back(number);
@@ -217,7 +233,6 @@ CompileResult compile_for(const Model& model, const Beam& beam) {
     surface.image = i + 1 == model.surfaces.size();
     surface.semi_diameter = given.semi_diameter_mm;
     surface.inner_semi_diameter = given.inner_semi_diameter_mm;
-    if (given.stop) scene.stop = number;
   }
   if (findings.has_errors()) return result;
 
@@ -229,8 +244,12 @@ CompileResult compile_for(const Model& model, const Beam& beam) {
   if (findings.has_errors()) return result;
   tell_of_vertices_without_points(model, waiting, scene, findings);
   scene.pupil = compile_pupil(model, scene, first_order(scene, scene.primary, 1), findings);
-  result.first_order = first_order(scene, scene.primary,
-                                   scene.pupil.telecentric ? std::numeric_limits<double>::quiet_NaN() : scene.pupil.semi_diameter);
+  const double semi_diameter = scene.pupil.telecentric ? std::numeric_limits<double>::quiet_NaN() : scene.pupil.semi_diameter;
+  result.first_order = first_order(scene, scene.primary, semi_diameter);
+  if (scene.is_astigmatic()) {
+    const double wider = first_order(scene, scene.primary, 1, Section::x).entrance_pupil.magnification / result.first_order.entrance_pupil.magnification;
+    result.first_order_x = first_order(scene, scene.primary, semi_diameter * std::abs(wider), Section::x);  // of the same stop
+  }
   if (!findings.has_errors()) compile_what_is_needed(model, beam, waiting, result, scene);
   if (!findings.has_errors()) result.scene = std::move(scene);
   return result;

@@ -18,6 +18,7 @@ namespace sagitta::scene {
 struct CompileResult {
   std::optional<Scene> scene;     // present exactly when there is no error among the findings
   FirstOrder first_order{};       // at the primary wavelength
+  std::optional<FirstOrder> first_order_x;  // the same of the x-z section, where that is another
   std::map<int, Smoothing> smoothing;  // by the number of the surface; of those whose points were smoothed
   std::vector<CloudPart> parts;   // in the order of the surfaces
   std::map<int, surface::Shape> given;  // by the number of the surface: its shape as prescribed, where another one is the same

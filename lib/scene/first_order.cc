@@ -52,7 +52,7 @@ std::vector<AxialGap> axial_gaps(const Scene& scene, const Wavelength& wavelengt
 
 class Paraxial {
  public:
-  Paraxial(const Scene& scene, const Wavelength& wavelength) : scene_(scene), gaps_(axial_gaps(scene, wavelength)) {}
+  Paraxial(const Scene& scene, const Wavelength& wavelength, Section section = Section::y) : scene_(scene), section_(section), gaps_(axial_gaps(scene, wavelength)) {}
 
   double index_before(int number) const { return gap(number - 1).index_end; }
   double index_behind(int number) const { return scene_.surface(number).image ? index_before(number) : gap(number).index_start; }
@@ -68,7 +68,7 @@ class Paraxial {
     for (int i = first; i <= last; ++i) {
       if (i > first) ray = transferred(ray, i);
       if (scene_.surface(i).image) continue;
-      const double power = (index_behind(i) - index_before(i)) * scene_.surface(i).vertex_curvature;
+      const double power = (index_behind(i) - index_before(i)) * curvature(i);
       ray.v -= power * ray.y;
       ray.v_terms += std::abs(power) * ray.y_terms;
     }
@@ -81,6 +81,7 @@ class Paraxial {
   }
 
  private:
+  double curvature(int number) const { return section_ == Section::y ? scene_.surface(number).vertex_curvature : scene_.surface(number).vertex_curvature_x; }
   const AxialGap& gap(int number) const { return gaps_[static_cast<std::size_t>(number)]; }
   ParaxialRay transferred(ParaxialRay ray, int to) const {
     if (const auto& by = gap(to - 1).curved) {
@@ -92,6 +93,7 @@ class Paraxial {
   }
 
   const Scene& scene_;
+  Section section_;
   std::vector<AxialGap> gaps_;
 };
 
@@ -102,8 +104,8 @@ double crossing(const ParaxialRay& ray, double index) {
 
 }  // namespace
 
-FirstOrder first_order(const Scene& scene, const Wavelength& wavelength, double entrance_pupil_semi_diameter) {
-  const Paraxial paraxial(scene, wavelength);
+FirstOrder first_order(const Scene& scene, const Wavelength& wavelength, double entrance_pupil_semi_diameter, Section section) {
+  const Paraxial paraxial(scene, wavelength, section);
   const int last = paraxial.last_acting();
   const double n = paraxial.index_before(1), n_after = paraxial.index_behind(last);
   const double z_first = scene.surface(1).axis_z, z_last = scene.surface(last).axis_z;
@@ -146,13 +148,13 @@ FirstOrder first_order(const Scene& scene, const Wavelength& wavelength, double 
 }
 
 double marginal_height(const Scene& scene, const Wavelength& wavelength, const Pupil& entrance_pupil, int surface_number) {
+  if (!scene.object.at_infinity()) return height_from_object(scene, wavelength, entrance_pupil.semi_diameter / (entrance_pupil.z - scene.object.z), surface_number);
+  return std::abs(Paraxial(scene, wavelength).up_to({entrance_pupil.semi_diameter, 0}, 1, surface_number).y);
+}
+
+double height_from_object(const Scene& scene, const Wavelength& wavelength, double tangent, int surface_number) {
   const Paraxial paraxial(scene, wavelength);
-  ParaxialRay ray{entrance_pupil.semi_diameter, 0};
-  if (!scene.object.at_infinity()) {
-    const double slope = entrance_pupil.semi_diameter / (entrance_pupil.z - scene.object.z);
-    ray = {slope * (scene.surface(1).axis_z - scene.object.z), slope * paraxial.index_before(1)};
-  }
-  return std::abs(paraxial.up_to(ray, 1, surface_number).y);
+  return std::abs(paraxial.up_to({tangent * (scene.surface(1).axis_z - scene.object.z), tangent * paraxial.index_before(1)}, 1, surface_number).y);
 }
 
 }  // namespace sagitta::scene

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// First-order (paraxial) properties of a scene, in the y-z section and along the undisturbed axis: decenters and tilts
-// of surfaces play no part.
+// First-order (paraxial) properties of a scene, in the y-z section (or, for reports, the x-z section) and along the undisturbed axis: decenters and
+// tilts of surfaces play no part.
 //
 // The state of a paraxial ray is (y, V), V = n u the optical direction; n is negative in gaps that light crosses toward
 // -z (after an odd number of mirrors), as are their thicknesses t. With c the vertex curvature:
@@ -37,10 +37,14 @@ struct FirstOrder {
   double image_z;          // of the paraxial image of the axial object point, global; infinite if the image is afocal
 };
 
+enum class Section { x, y };
+
 // `entrance_pupil_semi_diameter` may be NaN: then the pupils' semi-diameters are.
-FirstOrder first_order(const Scene& scene, const Wavelength& wavelength, double entrance_pupil_semi_diameter);
+FirstOrder first_order(const Scene& scene, const Wavelength& wavelength, double entrance_pupil_semi_diameter, Section section = Section::y);
 
 // Height of the paraxial marginal ray (axial object point, rim of the entrance pupil) at a surface: the beam's radius there.
 double marginal_height(const Scene& scene, const Wavelength& wavelength, const Pupil& entrance_pupil, int surface_number);
+// The same of the ray from the axial object point that starts with this tangent to the axis; finite object.
+double height_from_object(const Scene& scene, const Wavelength& wavelength, double tangent, int surface_number);
 
 }  // namespace sagitta::scene

@@ -6,6 +6,7 @@
 // space, gap i lies behind surface i.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -29,7 +30,7 @@ struct Surface {
   bool centred = true;                                  // local_from_previous is a shift along z only
   numerics::RigidTransform<double> global_from_local;
   double axis_z = 0;                                    // global z of its vertex before decenter
-  double vertex_curvature = 0;                          // 1/mm, y-z section
+  double vertex_curvature = 0, vertex_curvature_x = 0;  // 1/mm, of the y-z section, of the x-z section
   double semi_diameter = std::numeric_limits<double>::infinity();
   double inner_semi_diameter = 0;
 
@@ -78,6 +79,8 @@ struct LaunchPupil {
   double z = 0;               // of the entrance pupil, global
   double semi_diameter = 0;   // of the entrance pupil
   double edge_tangent = 0;    // telecentric only: tangent of the angle of the rim's rays
+  bool is_of_stop = false;    // pupil points are those of the stop, and rays are aimed at them
+  double stop_semi_diameter = 0;  // of the stop as that beam has it paraxially
 };
 
 struct Scene {
@@ -92,6 +95,12 @@ struct Scene {
   numerics::Arena arena;
 
   int surface_count() const { return static_cast<int>(surfaces.size()); }
+  // Whether its x-z section is another than its y-z section, by more than the rounding of sums of terms.
+  bool is_astigmatic() const {
+    return std::any_of(surfaces.begin(), surfaces.end(), [](const Surface& one) {
+      return std::abs(one.vertex_curvature_x - one.vertex_curvature) > 1e-13 * std::max(std::abs(one.vertex_curvature_x), std::abs(one.vertex_curvature));
+    });
+  }
   const Surface& surface(int number) const { return surfaces[static_cast<std::size_t>(number - 1)]; }
 };
 

@@ -38,10 +38,13 @@ std::vector<trace::RayBatch> tracer_states(const View& view, trace::RayBatch lau
   return states;
 }
 
-std::vector<ExactRay> launch_exactly(const View& view, const scene::Field& field, std::span<const trace::PupilPoint> pupil) {
+// Where rays are aimed, the points of the entrance pupil that were found for them are numbers as those of the scene are.
+std::vector<ExactRay> launch_exactly(const View& view, const scene::Field& field, const trace::Launcher& launcher, std::span<const trace::PupilPoint> pupil) {
+  const trace::AimedPupil aimed = launcher.at_entrance_pupil(pupil);
   std::vector<ExactRay> rays(pupil.size());
-  trace::launch_rays<Exact>(view.scene, field, view.wavelength.index.front(), pupil,
-                            [&](std::size_t i, const Vec3<Exact>& position, const Vec3<Exact>& direction, const Exact& opl) { rays[i] = {position, direction, 0, opl}; });
+  trace::launch_rays<Exact>(view.scene, field, view.wavelength.index.front(), aimed.points, [&](std::size_t i, const Vec3<Exact>& position, const Vec3<Exact>& direction, const Exact& opl) {
+    rays[i] = {position, direction, aimed.found[i] ? 0 : launcher.ending_of_lost(), opl};
+  });
   return rays;
 }
 
@@ -78,6 +81,7 @@ Track track(const View& view, const std::vector<trace::RayBatch>& states, const 
     result.rim_distance = distance_from_rim(view, exact, result.ended, result.exact_ended);
     return result;
   }
+  if (launched.ended != 0) return result;  // it could not be aimed
   const int comes_to = result.ended == 0 ? last : result.ended / 8 - 1;
   ExactRay from = as_exact(states[0], i);  // where the tracer itself goes on from
   int from_number = 0;
@@ -116,7 +120,8 @@ void know_reference(const scene::Scene& scene, Bundle& bundle) {
   const scene::Scene open = analysis::without_obscurations(scene);
   const View view{open, wavelength};
   const std::vector<trace::PupilPoint> centre{{0, 0}};
-  const Track chief = track(view, tracer_states(view, trace::launch(open, field, wavelength.index.front(), centre)), launch_exactly(view, field, centre).front(), 0);
+  const trace::Launcher launcher(open, field, wavelength);
+  const Track chief = track(view, tracer_states(view, launcher(centre)), launch_exactly(view, field, launcher, centre).front(), 0);
   if (chief.ended != 0 || chief.exact_ended != 0) {
     bundle.reference.reason = "the exact chief ray ends otherwise than the tracer's";
     return;
@@ -316,8 +321,9 @@ Rounding rounding_of(const scene::Scene& scene, const RoundingRequest& request) 
     for (std::size_t wavelength = 0; wavelength < scene.wavelengths.size(); ++wavelength) {
       const View view{scene, scene.wavelengths[wavelength]};
       Bundle bundle{field, wavelength, trace::pupil_points({trace::PatternKind::hexapolar}, request.rays), {}, {}, {}, {}, {}};
-      bundle.states = tracer_states(view, trace::launch(scene, scene.fields[field], view.wavelength.index.front(), bundle.pupil));
-      const std::vector<ExactRay> launched = launch_exactly(view, scene.fields[field], bundle.pupil);
+      const trace::Launcher launcher(scene, scene.fields[field], view.wavelength);
+      bundle.states = tracer_states(view, launcher(bundle.pupil));
+      const std::vector<ExactRay> launched = launch_exactly(view, scene.fields[field], launcher, bundle.pupil);
       bundle.tracks.resize(bundle.pupil.size());
       numerics::share_blocks(bundle.tracks.size(), request.thread_count, [&] { return [&](std::size_t i) { bundle.tracks[i] = track(view, bundle.states, launched[i], i); }; });
       know_reference(scene, bundle);

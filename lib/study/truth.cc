@@ -56,7 +56,7 @@ TrueRay stored(const Path<T>& ray) {
 template <class T>
 void trace_exactly(const scene::Scene& scene, const scene::Wavelength& wavelength, const TrueRaysRequest& request, const trace::RayBatch& launched,
                    std::size_t i, TrueRays& rays) {
-  Path<T> ray{numerics::vec3_cast<T>(launched.position(i)), numerics::normalized(numerics::vec3_cast<T>(launched.direction(i))), 0};
+  Path<T> ray{numerics::vec3_cast<T>(launched.position(i)), numerics::normalized(numerics::vec3_cast<T>(launched.direction(i))), launched.ended[i]};
   for (int number = 1; number <= scene.surface_count(); ++number) {
     const bool is_studied = number == request.surface_number;
     const auto gap = static_cast<std::size_t>(number);
@@ -84,7 +84,7 @@ TrueRaysResult true_rays(const scene::Scene& scene, const scene::Wavelength& wav
                               surface::kernel_name(scene.surface(number).shape))};
   if (wavelength.has_gradient_at(request.surface_number))
     return {{}, fmt::format("a gradient-index medium begins or ends at surface {}, and only surfaces between media of one index can be studied", request.surface_number)};
-  const trace::RayBatch launched = trace::launch(scene, field, wavelength.index.front(), pupil, false);
+  const trace::RayBatch launched = trace::launch(scene, field, wavelength, pupil, false);
   TrueRays rays{std::vector<TrueRay>(launched.size()), std::vector<TrueRay>(launched.size())};
   constexpr std::size_t block_size = 64;
   numerics::share_blocks((launched.size() + block_size - 1) / block_size, request.thread_count, [&] {

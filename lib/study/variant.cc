@@ -36,11 +36,12 @@ struct View {
   const scene::Scene& scene;
   const scene::Field& field;
   int number;
+  const scene::Scene& launching;  // the system as prescribed: rays that are aimed are the same in every variant
 
   const scene::Wavelength& wavelength() const { return scene.primary; }
   const surface::Shape& shape() const { return scene.surface(number).shape; }
   trace::RayBatch before_surface(std::span<const trace::PupilPoint> pupil) const {
-    trace::RayBatch rays = trace::launch(scene, field, wavelength().index.front(), pupil, false);
+    trace::RayBatch rays = trace::launch(launching, field, launching.primary, pupil, false);
     for (int before = 1; before < number; ++before) trace::trace_surface(scene, wavelength(), before, rays);
     return rays;
   }
@@ -200,7 +201,7 @@ struct Subject::Parts {
   std::optional<RoughCloud> rough_cloud;
   std::optional<analysis::WavefrontResult> wavefront;
 
-  View view(const scene::Scene& of) const { return {of, of.fields[field], number}; }
+  View view(const scene::Scene& of) const { return {of, of.fields[field], number, *scene}; }
   double spacing(const Variant& variant) const { return spacing_of(variant.arrangement, radius(variant)); }
   double radius(const Variant& variant) const {
     const Arrangement& arrangement = variant.arrangement;
@@ -333,6 +334,7 @@ Measured Subject::measure(const Variant& variant) {
   scene::Scene& scene = *prepared.compiled.scene;
   scene.pupil = parts.scene->pupil;
   scene.surfaces[at(parts.number)].vertex_curvature = parts.scene->surface(parts.number).vertex_curvature;
+  scene.surfaces[at(parts.number)].vertex_curvature_x = parts.scene->surface(parts.number).vertex_curvature_x;
   const View view = parts.view(scene);
 
   std::optional<NearestVertex> nearest;

@@ -50,6 +50,7 @@ struct Biconic : QuadricDeparture<Biconic> {
 
   bool is_conic() const { return x.curvature == y.curvature && (x.conic_constant == y.conic_constant || x.curvature == 0); }
   double vertex_curvature() const { return y.curvature; }
+  double vertex_curvature_x() const { return x.curvature; }
 
   // c and (1+K) c^2 of a section.
   template <class T>

@@ -10,6 +10,7 @@
 //     template <class T> Gradient<T> gradient(T x, T y) const;
 //     template <class T> Crossing<T> meet(Vec3<T> p, Vec3<T> d) const;
 //     double vertex_curvature() const;                      // y-z second derivative of the sag at the local origin
+//     double vertex_curvature_x() const;                    // x-z second derivative, where it may be another
 //     std::string kernel() const;                           // its name in plans, where it is not `kind`
 //     std::size_t data_bytes() const;                       // of the arrays it points to, where there are any
 //   };

@@ -230,29 +230,42 @@ struct BicubicGrid : QuadricDeparture<BicubicGrid> {
     return base.bend_on(at, d, within) + T(most);
   }
 
-  // On a node the second derivative has two values along y, of the cells above and below: their mean, or the one that there are data of.
-  double vertex_curvature() const {
+  // On a node the second derivative has two values, of the cells on both sides: their mean, or the one that there are data of.
+  double vertex_curvature() const { return base.curvature_y + vertex_bend<false>(); }
+  double vertex_curvature_x() const { return base.curvature_y + vertex_bend<true>(); }  // the base is a conic
+  template <bool is_along_x>
+  double vertex_bend() const {
     constexpr double slack = 1e-9;
-    const Along<double> at_x = along_x(0.0), at_y = along_y(0.0);
+    const Along<double> at = is_along_x ? along_x(0.0) : along_y(0.0), beside = is_along_x ? along_y(0.0) : along_x(0.0);
+    const int count = is_along_x ? count_x : count_y;
+    const double spacing = is_along_x ? spacing_x : spacing_y;
+    const auto node_at = [&](int cell, int side) -> const GridNode& { return *(is_along_x ? node(cell, beside.cell + side) : node(beside.cell + side, cell)); };
     const auto in_cell = [&](int cell, double part) {
-      const double wide = cell == 0 || cell == count_y ? count_y - 1 : 1;
-      const GridNode *low = node(at_x.cell, cell), *high = low + count_x + 2;
+      const double wide = cell == 0 || cell == count ? count - 1 : 1;
       const auto second = [&](double from, double to, double from_slope, double to_slope) {
         const auto ends = controls<2>(from, to, wide * from_slope, wide * to_slope);
-        return (ends[0] + part * (ends[1] - ends[0])) / (wide * wide * spacing_y * spacing_y);
+        return (ends[0] + part * (ends[1] - ends[0])) / (wide * wide * spacing * spacing);
       };
-      const auto height = [&](int side) { return second(low[side].z, high[side].z, low[side].y, high[side].y); };
-      const auto slope = [&](int side) { return second(low[side].x, high[side].x, low[side].xy, high[side].xy); };
-      const Basis<double> b(at_x);
+      const auto slope_along = [](const GridNode& one) { return is_along_x ? one.x : one.y; };
+      const auto slope_across = [](const GridNode& one) { return is_along_x ? one.y : one.x; };
+      const auto height = [&](int side) {
+        const GridNode &from = node_at(cell, side), &to = node_at(cell + 1, side);
+        return second(from.z, to.z, slope_along(from), slope_along(to));
+      };
+      const auto slope = [&](int side) {
+        const GridNode &from = node_at(cell, side), &to = node_at(cell + 1, side);
+        return second(slope_across(from), slope_across(to), from.xy, to.xy);
+      };
+      const Basis<double> b(beside);
       return height(0) + ((height(1) - height(0)) * b.h + (slope(0) * b.k0 - slope(1) * b.k1));
     };
-    const bool is_on_first = at_y.part < slack && at_y.cell > 0, is_on_last = at_y.part > 1 - slack && at_y.cell < count_y;
-    if (!is_on_first && !is_on_last) return base.curvature_y + in_cell(at_y.cell, at_y.part);
-    const int above = is_on_first ? at_y.cell : at_y.cell + 1, below = above - 1;
-    const auto counts = [&](double side) { return has_data(0.0, side * 0.5 * spacing_y); };
-    const bool has_above = counts(1), has_below = counts(-1);
-    if (has_above != has_below) return base.curvature_y + (has_above ? in_cell(above, 0) : in_cell(below, 1));
-    return base.curvature_y + (in_cell(above, 0) + in_cell(below, 1)) / 2;
+    const bool is_on_first = at.part < slack && at.cell > 0, is_on_last = at.part > 1 - slack && at.cell < count;
+    if (!is_on_first && !is_on_last) return in_cell(at.cell, at.part);
+    const int behind = is_on_first ? at.cell : at.cell + 1, before = behind - 1;
+    const auto counts = [&](double side) { return is_along_x ? has_data(side * 0.5 * spacing, 0.0) : has_data(0.0, side * 0.5 * spacing); };
+    const bool has_behind = counts(1), has_before = counts(-1);
+    if (has_behind != has_before) return has_behind ? in_cell(behind, 0) : in_cell(before, 1);
+    return (in_cell(behind, 0) + in_cell(before, 1)) / 2;
   }
 
   // Of a hit, which is within the grid.

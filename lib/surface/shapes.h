@@ -50,6 +50,14 @@ inline std::size_t data_bytes(const Shape& shape) {
   }, shape);
 }
 
+// The x-z second derivative of the sag at the local origin.
+inline double vertex_curvature_x(const Shape& shape) {
+  return std::visit([]<class S>(const S& of) {
+    if constexpr (requires { of.vertex_curvature_x(); }) return of.vertex_curvature_x();
+    else return of.vertex_curvature();
+  }, shape);
+}
+
 // The shape of fewest operations that is the same surface: what departs from a conic by nothing is that conic, a biconic of
 // equal sections too, a conic of K = 0 a sphere, one of curvature 0 a plane.
 inline Shape least_form(const Shape& shape) {

@@ -57,6 +57,7 @@ struct Toroid : QuadricDeparture<Toroid> {
   std::size_t data_bytes() const { return sizeof *this + static_cast<std::size_t>(order - 1) * sizeof(double); }
   bool is_sphere() const { return order < 2 && section.curvature == rotation && section.conic_constant == 0; }
   double vertex_curvature() const { return section.curvature + (order < 2 ? 0 : 2 * coefficients[order - 2]); }
+  double vertex_curvature_x() const { return rotation; }
 
   // The sum of a_k y^k and its derivatives; of the terms' sizes, instead of the terms.
   template <class T>

@@ -68,9 +68,12 @@ struct XyPolynomial : ConicDeparture<XyPolynomial> {
 
   std::string kernel() const { return "polynomial in x and y of degree " + std::to_string(polynomial.degree); }
   std::size_t data_bytes() const { return sizeof *this + (numerics::Polynomial::count(polynomial.degree) + static_cast<std::size_t>(polynomial.degree + 1)) * sizeof(double); }
-  double vertex_curvature() const {
+  double vertex_curvature() const { return curvature_by(0, 2); }
+  double vertex_curvature_x() const { return curvature_by(2, 0); }
+  // With the term X^i Y^k, which is a square.
+  double curvature_by(int i, int k) const {
     const int degree = polynomial.degree;
-    return base.curvature + (degree < 2 ? 0 : 2 * polynomial.coefficients[numerics::Polynomial::place(degree, 0, 2)] * per_radius * per_radius);
+    return base.curvature + (degree < 2 ? 0 : 2 * polynomial.coefficients[numerics::Polynomial::place(degree, i, k)] * per_radius * per_radius);
   }
 
   template <class T>

@@ -203,8 +203,10 @@ struct Zernike : ConicDeparture<Zernike> {
       if (lines.travels[i]) crossings.put(i, meet(Vec3<double>{lines.x[i], lines.y[i], lines.z[i]}, Vec3<double>{lines.l[i], lines.m[i], lines.n[i]}));
   }
 
-  // c plus the y^2 terms of the sum: only m = 0 (u = Y^2: dP/du) and m = 2 cosine (Re h_2 = -Y^2) have them.
-  double vertex_curvature() const {
+  double vertex_curvature() const { return curvature_along(-1); }
+  double vertex_curvature_x() const { return curvature_along(1); }
+  // c plus the y^2 or x^2 terms of the sum: only m = 0 (u = Y^2 or X^2: dP/du) and m = 2 cosine (Re h_2 = -Y^2 or X^2, its sign) have them.
+  double curvature_along(int sign) const {
     double second = 0;
     for (int g = 0; g < group_count; ++g) {
       if (groups[g].m != 0 && groups[g].m != 2) continue;
@@ -216,7 +218,7 @@ struct Zernike : ConicDeparture<Zernike> {
           const double q_next = row->b * q + row->a * p - row->c * q_before;
           p_before = p, p = p_next, q_before = q, q = q_next;
         }
-        second += row->cosine * (groups[g].m == 0 ? 2 * q : -2 * p);
+        second += row->cosine * (groups[g].m == 0 ? 2 * q : sign * 2 * p);
       }
     }
     return base.curvature + second * per_radius * per_radius;

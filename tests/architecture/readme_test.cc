@@ -33,7 +33,7 @@ TEST(Readme, NamesEveryKeyOfThePrescription) {
     }
   };
   for (const prescription::KeyTable table :
-       {prescription::KeyTable(prescription::system_keys), prescription::KeyTable(prescription::aperture_keys),
+       {prescription::KeyTable(prescription::system_keys), prescription::KeyTable(prescription::aperture_section_keys),
         prescription::KeyTable(prescription::field_keys), prescription::KeyTable(prescription::object_keys),
         prescription::KeyTable(prescription::surface_keys), prescription::KeyTable(prescription::medium_keys), prescription::KeyTable(prescription::gradient_keys),
         prescription::KeyTable(prescription::study_keys), prescription::KeyTable(prescription::variant_keys),

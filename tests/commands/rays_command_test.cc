@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include "tests/support/program.h"
 
@@ -165,6 +169,40 @@ TEST(RaysCommand, wrong_usage_is_2_and_wrong_input_1) {
   for (const std::string options : {" --field 0", " --fan x:3", " --pupil 0,0"}) EXPECT_EQ(run_program("rays " + system + " --from " + csv + options).status, 2) << options;
   EXPECT_EQ(run_program("rays " + folder.path("none.yaml")).status, 1);
   EXPECT_EQ(run_program("rays " + system + " --wavelength 99").status, 1);
+}
+
+// A ray that is aimed meets the stop where its pupil point stands, and one that cannot be has one row, at the stop, where it would have been launched.
+TEST(RaysCommand, AimsAtTheStopAndSaysWhatCannotBeAimed) {
+  const Folder folder;
+  const std::string system = folder.file("s.yaml", "sagitta: 1\nwavelengths_nm: [550]\naperture: {stop_diameter_mm: 2, aim: stop}\nfields: {angles_deg: [[0, 30], [0, 85]]}\nsurfaces:\n"
+                                                   "  - {conic: {radius_mm: 40}, thickness_mm: 1.5, medium: {index: 1.7}}\n  - {conic: {radius_mm: 8}, thickness_mm: 14}\n"
+                                                   "  - {stop: true, thickness_mm: 5, decenter_mm: [0, 0.5, 0], tilt_deg: [10, 0, 0]}\n  - {}\n");
+  const Outcome run = run_program("rays '" + system + "' --pupil 0,1 0,-1");
+  EXPECT_EQ(run.status, 0) << run.err;
+  std::istringstream lines(run.out);
+  std::vector<std::vector<std::string>> rows;
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream cells(line);
+    rows.emplace_back();
+    for (std::string cell; std::getline(cells, cell, ',');) rows.back().push_back(cell);
+  }
+  int at_stop = 0, lost = 0;
+  for (const auto& row : rows) {
+    if (row[3] != "3") continue;
+    if (row[12] == "ok" && row[1] == "0") {
+      const double py = row[0] == "1" ? 1 : -1;  // +y is turned toward +z
+      EXPECT_NEAR(std::stod(row[6]), 0.5 + py * std::cos(10 * M_PI / 180), 1e-12);
+      EXPECT_NEAR(std::stod(row[7]), 15.5 + py * std::sin(10 * M_PI / 180), 1e-12);
+      ++at_stop;
+    }
+    if (row[12] != "not_converged") continue;
+    EXPECT_EQ(row[1], "1");
+    EXPECT_EQ(std::count_if(rows.begin(), rows.end(), [&](const auto& other) { return other[0] == row[0]; }), 1);
+    EXPECT_NEAR(std::stod(row[9]), std::sin(85 * M_PI / 180), 1e-15);  // its direction is the field's
+    ++lost;
+  }
+  EXPECT_EQ(at_stop, 2);
+  EXPECT_GE(lost, 1);
 }
 
 }  // namespace

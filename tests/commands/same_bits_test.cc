@@ -38,7 +38,7 @@ TEST_P(SameBits, WithEachInstructionSetAndAnyNumberOfThreads) {
 
 INSTANTIATE_TEST_SUITE_P(Systems, SameBits,
                          testing::Values("double-gauss.yaml", "navarro-eye.yaml", "ritchey-chretien.yaml", "cornea-zernike.yaml",
-                                         "cornea-delaunay.yaml", "eye-with-measured-cornea.yaml"));
+                                         "cornea-delaunay.yaml", "eye-with-measured-cornea.yaml", "three-mirror-compact.yaml"));
 
 }  // namespace
 }  // namespace sagitta::test

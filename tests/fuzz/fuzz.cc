@@ -52,7 +52,7 @@ const std::vector<std::string>& words() {
       }
     };
     using namespace prescription;
-    for (const KeyTable table : {KeyTable(system_keys), KeyTable(aperture_keys), KeyTable(field_keys), KeyTable(object_keys), KeyTable(surface_keys), KeyTable(medium_keys),
+    for (const KeyTable table : {KeyTable(system_keys), KeyTable(aperture_section_keys), KeyTable(field_keys), KeyTable(object_keys), KeyTable(surface_keys), KeyTable(medium_keys),
                                  KeyTable(study_keys), KeyTable(variant_keys), KeyTable(roughness_keys), KeyTable(paper_keys)})
       take(table);
     for (const ShapeKind& kind : shape_kinds()) {

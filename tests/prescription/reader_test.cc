@@ -254,7 +254,7 @@ surfaces:
 }
 
 TEST(Keys, AreNamedOnceInEachTable) {
-  std::vector<KeyTable> tables{system_keys, aperture_keys, field_keys, object_keys, surface_keys, medium_keys};
+  std::vector<KeyTable> tables{system_keys, aperture_section_keys, field_keys, object_keys, surface_keys, medium_keys};
   for (const ShapeKind& kind : shape_kinds()) tables.push_back(kind.keys);
   EXPECT_GE(tables.size(), 10u);
   for (const KeyTable& table : tables)

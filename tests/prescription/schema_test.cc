@@ -147,7 +147,7 @@ TEST(Schema, TakesTheValuesThatTheReaderTakes) {
     std::string name;
     KeyTable keys;
   };
-  std::vector<Level> levels{{"top", system_keys}, {"aperture", aperture_keys}, {"object", object_keys}, {"surface", surface_keys}, {"medium", medium_keys}};
+  std::vector<Level> levels{{"top", system_keys}, {"aperture", aperture_section_keys}, {"object", object_keys}, {"surface", surface_keys}, {"medium", medium_keys}};
   for (const ShapeKind& kind : shape_kinds())
     if (kind.name == "conic" || kind.name == "zernike" || kind.name == "delaunay") levels.push_back({std::string(kind.name), kind.keys});
   const test::TemporaryFolder folder, files;

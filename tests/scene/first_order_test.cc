@@ -155,5 +155,26 @@ TEST(FirstOrder, the_power_of_a_sampled_sphere_is_that_of_the_sphere) {
   EXPECT_NEAR(compiled.scene.surface(1).vertex_curvature, 1 / 7.8, 7e-5);
 }
 
+// The x section of a system is the y section of the same system with x and y exchanged, the stop being one.
+TEST(FirstOrder, the_x_section_is_the_y_section_of_the_system_turned) {
+  const auto system = [](const std::string& first, const std::string& last) {
+    return compile_text(prescription_of("  - {" + first + ", thickness_mm: 3, medium: {index: 1.5}}\n  - {stop: true, thickness_mm: 2, medium: {index: 1.5}}\n  - {" + last +
+                                            ", thickness_mm: 20}\n  - {}\n", "stop_diameter_mm: 3"));
+  };
+  const scene::CompileResult is = system("biconic: {radius_x_mm: 20, radius_y_mm: 30}", "toroid: {radius_rotation_mm: -40, radius_mm: -25, coefficients: {2: 1e-3}}");
+  const scene::CompileResult turned = system("biconic: {radius_x_mm: 30, radius_y_mm: 20}", "conic: {radius_mm: -40}");
+  ASSERT_TRUE(is.first_order_x && turned.scene);
+  EXPECT_TRUE(turned.first_order_x);  // for its x section is that of the y section here no more
+  for (const auto pupil : {&scene::FirstOrder::entrance_pupil, &scene::FirstOrder::exit_pupil}) {
+    const scene::Pupil &of_x = (*is.first_order_x).*pupil, &of_y = turned.first_order.*pupil;
+    EXPECT_NEAR(of_x.z, of_y.z, 1e-14);
+    EXPECT_NEAR(of_x.semi_diameter, of_y.semi_diameter, 1e-14);
+    EXPECT_GT(std::abs(of_x.z - (is.first_order.*pupil).z), .01);
+  }
+  const scene::CompileResult round = system("conic: {radius_mm: 20}", "zernike: {radius_mm: -30, normalization_radius_mm: 3, indexing: osa, coefficients_um: {4: 20, 12: -7, 24: 3}}");
+  ASSERT_TRUE(round.scene);
+  EXPECT_FALSE(round.first_order_x);
+}
+
 }  // namespace
 }  // namespace sagitta::test

@@ -14,7 +14,7 @@ inline prescription::Model system_of(std::vector<prescription::Surface> surfaces
   prescription::Model model;
   model.file = "study";
   model.wavelengths_nm = {855};
-  model.aperture = {prescription::ApertureKind::entrance_pupil_diameter_mm, pupil_diameter_mm, {}};
+  model.aperture = {prescription::ApertureKind::entrance_pupil_diameter_mm, pupil_diameter_mm, false, {}};
   model.fields.points.clear();
   for (const double angle : angles_deg) model.fields.points.push_back({0, angle});
   model.surfaces = std::move(surfaces);

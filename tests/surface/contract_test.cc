@@ -97,6 +97,8 @@ TEST(Contract, VertexIsAtTheOriginAndItsCurvatureIsTheSecondDerivative) {
     const Fifty h("1e-12");
     const Fifty second = (shape.sag(Fifty(0), h) - 2 * shape.sag(Fifty(0), Fifty(0)) + shape.sag(Fifty(0), Fifty(-h))) / (h * h);
     EXPECT_NEAR(shape.vertex_curvature(), static_cast<double>(second), 1e-11);  // h times the third derivative
+    const Fifty second_x = (shape.sag(h, Fifty(0)) - 2 * shape.sag(Fifty(0), Fifty(0)) + shape.sag(Fifty(-h), Fifty(0))) / (h * h);
+    EXPECT_NEAR(vertex_curvature_x(surface::Shape(shape)), static_cast<double>(second_x), 1e-11);
   });
 }
 

@@ -234,6 +234,19 @@ TEST(Grid, HasTheVertexCurvatureOfBothSidesOfANode) {
   const BicubicGrid inside = grid_on(sag_grid({8, 8, h, h}, node), arena, base);
   const double d = 1e-4, second = (inside.sag(0.0, d) - 2 * inside.sag(0.0, 0.0) + inside.sag(0.0, -d)) / (d * d);
   EXPECT_NEAR(inside.vertex_curvature(), second, 1e-7);
+  // along x likewise: the same grids with x and y exchanged
+  const auto turned = [](const SagGrid& grid) {
+    SagGrid result = grid;
+    for (std::size_t j = 0; j < 9; ++j)
+      for (std::size_t i = 0; i < 9; ++i) {
+        const SagGrid::Node& from = grid.nodes[i * 9 + j];
+        result.nodes[j * 9 + i] = from;
+        std::swap(result.nodes[j * 9 + i].x, result.nodes[j * 9 + i].y);
+      }
+    return result;
+  };
+  for (const SagGrid& grid : {sag_grid({9, 9, h, h}, node), jumps}) EXPECT_EQ(grid_on(turned(grid), arena, base).vertex_curvature_x(), grid_on(grid, arena, base).vertex_curvature());
+  EXPECT_EQ(grid_on(jumps, arena, base).vertex_curvature_x(), .05);
   EXPECT_EQ(grid_on(sag_grid({5, 5, h, h}, [](double, double) { return SagGrid::Node{}; }), arena, base).vertex_curvature(), .05);
 }
 

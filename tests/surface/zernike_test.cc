@@ -182,7 +182,7 @@ TEST(ZernikeSurface, defocus_on_a_plane_is_a_paraboloid) {
   EXPECT_NEAR(surface.vertex_curvature(), c, 1e-16);
 }
 
-TEST(ZernikeSurface, vertex_curvature_takes_in_the_terms_of_the_yz_section) {
+TEST(ZernikeSurface, vertex_curvatures_take_in_the_terms_of_their_sections) {
   numerics::Arena arena;
   Given given{.radius = -50, .K = 2, .r0 = 2.5};
   for (int j = 0; j < 66; ++j) given.coefficients.push_back({j, 0.3 * std::cos(2.0 * j)});
@@ -190,6 +190,8 @@ TEST(ZernikeSurface, vertex_curvature_takes_in_the_terms_of_the_yz_section) {
   const Real50 h("1e-12");
   const Real50 second = (surface.sag<Real50>(0, h) - 2 * surface.sag<Real50>(0, 0) + surface.sag<Real50>(0, -h)) / (h * h);
   EXPECT_NEAR(surface.vertex_curvature(), static_cast<double>(second), 1e-13);
+  const Real50 second_x = (surface.sag<Real50>(h, 0) - 2 * surface.sag<Real50>(0, 0) + surface.sag<Real50>(-h, 0)) / (h * h);
+  EXPECT_NEAR(surface.vertex_curvature_x(), static_cast<double>(second_x), 1e-13);
 }
 
 TEST(ZernikeSurface, wild_surface_ends_in_a_hit_on_it_or_in_a_status) {
