@@ -241,12 +241,12 @@ TEST(Grid, HasTheVertexCurvatureOfBothSidesOfANode) {
       for (std::size_t i = 0; i < 9; ++i) {
         const SagGrid::Node& from = grid.nodes[i * 9 + j];
         result.nodes[j * 9 + i] = from;
-        std::swap(result.nodes[j * 9 + i].x, result.nodes[j * 9 + i].y);
+        std::swap(result.nodes[j * 9 + i].dz_dx, result.nodes[j * 9 + i].dz_dy);
       }
     return result;
   };
   for (const SagGrid& grid : {sag_grid({9, 9, h, h}, node), jumps}) EXPECT_EQ(grid_on(turned(grid), arena, base).vertex_curvature_x(), grid_on(grid, arena, base).vertex_curvature());
-  EXPECT_EQ(grid_on(jumps, arena, base).vertex_curvature_x(), .05);
+  EXPECT_NEAR(grid_on(jumps, arena, base).vertex_curvature_x(), .05, 10 * eps);
   EXPECT_EQ(grid_on(sag_grid({5, 5, h, h}, [](double, double) { return SagGrid::Node{}; }), arena, base).vertex_curvature(), .05);
 }
 
