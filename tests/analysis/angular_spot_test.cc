@@ -87,7 +87,9 @@ TEST(AngularSpot, of_a_reduced_eye_with_its_stop_at_the_nodal_point_is_the_field
     EXPECT_NEAR(results[i].angular_spot->centroid_x, fields[i][0] * degree, 1e-8);
     EXPECT_NEAR(results[i].angular_spot->centroid_y, fields[i][1] * degree, 1e-8);
     // in the plane across the line of sight a spot of so small an angle is what local x, y and z say; on the axis x and y alone
-    if (i == 0) EXPECT_NEAR(results[i].angular_spot->rms_radius, results[i].spot->rms_radius / 16.65, 1e-9 * results[i].angular_spot->rms_radius);
+    if (i == 0) {
+      EXPECT_NEAR(results[i].angular_spot->rms_radius, results[i].spot->rms_radius / 16.65, 1e-9 * results[i].angular_spot->rms_radius);
+    }
   }
 }
 

@@ -29,7 +29,9 @@ TEST(SamplingOfGradients, TellsWhatEveryToleranceLeavesAndTheStepsItTakes) {
     EXPECT_EQ(run.is_given, run.tolerance_mm == 1e-9);
     EXPECT_GE(run.steps, 1);
     EXPECT_GT(changes[i].time_ratio, 0);
-    if (run.is_given) EXPECT_EQ(changes[i].time_ratio, 1);
+    if (run.is_given) {
+      EXPECT_EQ(changes[i].time_ratio, 1);
+    }
     if (i == 0) {
       EXPECT_EQ(changes[i].change[0].main(), 0);
       continue;
