@@ -267,7 +267,7 @@ TEST(Sampling, HasReasonsWhereThereIsNoAnswer) {
 
 TEST(Sampling, OfASystemThatIsNoneHasFindings) {
   prescription::Model model = mirror(defocus);
-  model.aperture = {prescription::ApertureKind::image_f_number, 4, {}};
+  model.aperture = {prescription::ApertureKind::image_f_number, 4, false, {}};
   model.surfaces[0].shape = conic_shape(std::numeric_limits<double>::infinity(), 0);
   const study::Sampling sampling = study::sample_system(model, small_request(), [](double) {});
   EXPECT_TRUE(sampling.findings.has_errors());
