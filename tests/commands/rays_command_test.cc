@@ -174,12 +174,16 @@ TEST(RaysCommand, wrong_usage_is_2_and_wrong_input_1) {
 // A ray that is aimed meets the stop where its pupil point stands, and one that cannot be has one row, at the stop, where it would have been launched.
 TEST(RaysCommand, AimsAtTheStopAndSaysWhatCannotBeAimed) {
   const Folder folder;
-  const std::string system = folder.file("s.yaml", "sagitta: 1\nwavelengths_nm: [550]\naperture: {stop_diameter_mm: 2, aim: stop}\nfields: {angles_deg: [[0, 30], [0, 85]]}\nsurfaces:\n"
+  const auto system_of = [&](const std::string& stop_diameter_mm) {
+    return folder.file("s.yaml", "sagitta: 1\nwavelengths_nm: [550]\naperture: {stop_diameter_mm: " + stop_diameter_mm + ", aim: stop}\nfields: {angles_deg: [[0, 30], [0, 85]]}\nsurfaces:\n"
                                                    "  - {conic: {radius_mm: 40}, thickness_mm: 1.5, medium: {index: 1.7}}\n  - {conic: {radius_mm: 8}, thickness_mm: 14}\n"
                                                    "  - {stop: true, thickness_mm: 5, decenter_mm: [0, 0.5, 0], tilt_deg: [10, 0, 0]}\n  - {}\n");
-  const Outcome run = run_program("rays '" + system + "' --pupil 0,1 0,-1");
+  };
+  const Outcome run = run_program("rays '" + system_of("2") + "' --pupil 0,1 0,-1");
   EXPECT_EQ(run.status, 0) << run.err;
-  std::istringstream lines(run.out);
+  const Outcome too_wide = run_program("rays '" + system_of("400") + "' --field 1 --pupil 0,1 0,0");  // behind a ball lens nothing comes 200 mm off the axis
+  EXPECT_EQ(too_wide.status, 0) << too_wide.err;
+  std::istringstream lines(run.out + too_wide.out);
   std::vector<std::vector<std::string>> rows;
   for (std::string line; std::getline(lines, line);) {
     std::istringstream cells(line);

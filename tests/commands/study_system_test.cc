@@ -51,7 +51,7 @@ TEST(StudySystemCommand, writes_tables_plots_and_advice) {
   EXPECT_EQ(spots, 120);
   EXPECT_GE(truths, 3 * 4);
   const std::string csv = read_text(out + "/study.csv");
-  EXPECT_THAT(csv, testing::StartsWith("answer,varied,pattern,rays,grid,surface,interpolation,field,wavelength_nm,launched,arrived,unit,value,error,error_percent,worst_to_next,claim,claim_percent,"));
+  EXPECT_THAT(csv, testing::StartsWith("answer,varied,pattern,rays,grid,surface,interpolation,tolerance_mm,steps,field,wavelength_nm,launched,arrived,unit,value,error,error_percent,worst_to_next,claim,claim_percent,"));
 
   // The answers of `trace` are among the rows, to the last bit.
   ASSERT_EQ(run_program("trace '" + system + "' -o '" + folder.path("trace") + "'").status, 0);
