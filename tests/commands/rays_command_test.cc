@@ -201,7 +201,7 @@ TEST(RaysCommand, AimsAtTheStopAndSaysWhatCannotBeAimed) {
     }
     if (row[12] != "not_converged") continue;
     EXPECT_EQ(row[1], "1");
-    EXPECT_EQ(std::count_if(rows.begin(), rows.end(), [&](const auto& other) { return other[0] == row[0]; }), 1);
+    EXPECT_EQ(std::count_if(rows.begin(), rows.end(), [&](const auto& other) { return other[0] == row[0] && other[1] == row[1]; }), 1);
     EXPECT_NEAR(std::stod(row[9]), std::sin(85 * M_PI / 180), 1e-15);  // its direction is the field's
     ++lost;
   }
