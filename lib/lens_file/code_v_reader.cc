@@ -264,9 +264,7 @@ class CodeVReader {
   void take_power(const Statement& statement) {
     const char letter = statement.name()[0];
     const int power_of_r = letter == 'J' ? 20 : 4 + 2 * (letter - 'A');
-    const Real a = value(statement);
-    if (a == 0) target().powers.erase(power_of_r);
-    else target().powers[power_of_r] = static_cast<double>(a * power(unit_, 1 - power_of_r));
+    target().powers[power_of_r] = value(statement);
   }
   void take_fresnel(const Statement& statement) {
     if (value(statement) != 0) report_.left_out(numbers_.place(statement), "CUF: a Fresnel surface");

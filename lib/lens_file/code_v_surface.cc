@@ -14,10 +14,13 @@ Surface surface_of(const CodeVSurface& given, Real unit_mm, Report& report) {
   surface.curvature = given.curvature / unit_mm;
   surface.thickness = given.thickness * unit_mm;
   const double radius = given.radius ? static_cast<double>(*given.radius * unit_mm) : radius_of(surface.curvature);
-  if (std::isfinite(radius) || !given.powers.empty()) {
-    surface.shape = {given.powers.empty() ? "conic" : "asphere", {{"radius_mm", radius}}};
+  Indexed coefficients;
+  for (const auto& [k, a] : given.powers)
+    if (const double one = kept(a * power(unit_mm, 1 - k)); one != 0) coefficients[k] = one;
+  if (std::isfinite(radius) || !coefficients.empty()) {
+    surface.shape = {coefficients.empty() ? "conic" : "asphere", {{"radius_mm", radius}}};
     if (given.conic != 0) surface.shape.items.push_back({"conic_constant", static_cast<double>(given.conic)});
-    if (!given.powers.empty()) surface.shape.items.push_back({"coefficients", given.powers});
+    if (!coefficients.empty()) surface.shape.items.push_back({"coefficients", coefficients});
   }
   if (given.semi_diameter != 0) surface.semi_diameter = static_cast<double>(given.semi_diameter * unit_mm);
   surface.inner_semi_diameter = static_cast<double>(given.inner_semi_diameter * unit_mm);

@@ -8,6 +8,7 @@
 //   BEN (a fold)     this surface stands in it; the frame behind is turned once more
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 
@@ -23,7 +24,7 @@ struct CodeVSurface {
   std::optional<Real> radius;  // where it was given so
   Real curvature = 0, conic = 0, thickness = 0;
   Place conic_place, thickness_place;
-  Indexed powers;  // of r in lens units
+  std::map<int, Real> powers;  // coefficients of powers of r
   Medium medium;
   Real semi_diameter = 0, inner_semi_diameter = 0;  // 0: none
   enum class Decenter { basic, and_return, reverse, bend } decenter = Decenter::basic;
@@ -31,7 +32,7 @@ struct CodeVSurface {
   Place decenter_place;
 };
 
-// Lengths of `given` are in units of `unit_mm`, but the powers.
+// Numbers of `given` are in units of `unit_mm`.
 Surface surface_of(const CodeVSurface& given, Real unit_mm, Report& report);
 
 }  // namespace sagitta::lens_file

@@ -30,11 +30,13 @@ std::optional<Real> parse_real(std::string_view text) {
   if (end != text.data() + text.size()) return std::nullopt;
   if (fault == std::errc::result_out_of_range && (text.find("e-") != std::string_view::npos || text.find("E-") != std::string_view::npos)) return 0;
   if (fault != std::errc{} || !(std::abs(value) <= largest_number)) return std::nullopt;
-  return value;
+  return std::abs(value) < smallest_number ? 0 : value;
 }
 
+double kept(Real value) { return std::abs(value) < smallest_number ? 0 : static_cast<double>(value); }
+
 double shortest_within(Real value, Real error) {
-  if (std::abs(value) <= error) return 0;
+  if (std::abs(value) <= error || std::abs(value) < smallest_number) return 0;
   for (int digits = 1; digits <= most_digits; ++digits) {
     const Real decimal = real_of(fmt::format("{:.{}e}", value, digits - 1));
     if (std::abs(decimal - value) <= error) return static_cast<double>(decimal);

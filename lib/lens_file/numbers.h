@@ -10,8 +10,9 @@
 
 namespace sagitta::lens_file {
 
-// What may be meant by a number of a file: 0, or a size of at most this.
-inline constexpr Real largest_number = 1e30L;
+// What may be meant by a number of a file: 0, or a size of at most this. Sizes below `smallest_number` are 0, also when units are converted: the reader of
+// prescriptions takes none.
+inline constexpr Real largest_number = 1e30L, smallest_number = 1e-100L;
 
 // A decimal number, whole: 1.5, -3E-4, +2, .5; finite and at most largest_number. None: it is no such number. Independent of the locale.
 std::optional<Real> parse_real(std::string_view text);
@@ -25,6 +26,9 @@ double radius_of(Real curvature);
 
 // The shortest text that reads back as the same double; ".inf" and "-.inf" as YAML has them; "0" for -0.
 std::string number_text(double value);
+
+// A number of a lens as the prescription has it.
+double kept(Real value);
 
 // `unit` mm to a power, by repeated multiplication and one division.
 Real power(Real unit, int exponent);

@@ -16,6 +16,7 @@ namespace sagitta::lens_file {
 namespace {
 
 constexpr Real um_per_mm = 1000;
+constexpr double most_of_a_term = 1e18;
 
 class Reader {
  public:
@@ -35,11 +36,18 @@ class Reader {
     const Real radius = parm(i).value;
     return radius == 0 ? std::numeric_limits<double>::infinity() : length(radius);
   }
+  double conic_parm(int i) {
+    const PlacedNumber given = parm(i);
+    const double k = static_cast<double>(given.value);
+    if (!surface::conic_constants.contains(k))
+      report_.broken(given.place, fmt::format("PARM {} of {}: a conic constant lies from {:g} to {:g}", i, given_.type, surface::conic_constants.low, surface::conic_constants.high));
+    return k;
+  }
   // Coefficients of powers, from PARM `first` on.
   Indexed powers(int first, int last, int first_power, int step) {
     Indexed found;
     for (int i = first, k = first_power; i <= last; ++i, k += step)
-      if (const Real a = parm(i).value; a != 0) found[k] = static_cast<double>(a * power(unit_, 1 - k));
+      if (const double a = kept(parm(i).value * power(unit_, 1 - k)); a != 0) found[k] = a;
     return found;
   }
   // Terms of an extra-data surface: XDAT 1 is their number, XDAT 2 the radius of normalisation, XDAT 3, ... are their coefficients, in lens units.
@@ -53,7 +61,10 @@ class Reader {
     if (!(count.value >= 0 && count.value <= most))
       report_.broken(place_of(count), fmt::format("XDAT 1 of {}: {} terms, where there may be 0 to {}", given_.type, number_text(static_cast<double>(count.value)), most));
     for (int j = 1; j <= most && j <= count.value; ++j)
-      if (const Real c = xdat(j + 2).value; c != 0) found.coefficients[j] = static_cast<double>(c * unit_ * per_mm);
+      if (const PlacedNumber c = xdat(j + 2); c.value != 0) {
+        found.coefficients[j] = kept(c.value * unit_ * per_mm);
+        if (!(std::abs(found.coefficients[j]) <= most_of_a_term)) report_.broken(c.place, fmt::format("XDAT {} of {}: the coefficient is larger than a sag can be", j + 2, given_.type));
+      }
     if (!found.coefficients.empty() && !(radius.value >= 1e-12L && radius.value <= 1e12L))
       report_.broken(place_of(radius), fmt::format("XDAT 2 of {}: the radius of normalisation is {}", given_.type, number_text(static_cast<double>(radius.value))), "it is positive");
     else
@@ -120,7 +131,7 @@ Form toroid(Reader& from) {
 
 Form biconic(Reader& from) {
   Form form{"biconic", {{"radius_x_mm", from.radius_parm(1)}, {"radius_y_mm", from.radius()}}};
-  if (const double k = static_cast<double>(from.parm(2).value); k != 0) form.items.push_back({"conic_constant_x", k});
+  if (const double k = from.conic_parm(2); k != 0) form.items.push_back({"conic_constant_x", k});
   if (from.conic() != 0) form.items.push_back({"conic_constant_y", from.conic()});
   return form;
 }
@@ -146,7 +157,7 @@ Form gradient(Reader& from, int r_count, int z_count) {
   const auto coefficients = [&](int first, int count, int step) {
     Indexed found;
     for (int i = 0; i < count; ++i)
-      if (const Real a = from.parm(first + i).value; a != 0) found[step * (i + 1)] = static_cast<double>(a * power(from.unit(), -step * (i + 1)));
+      if (const double a = kept(from.parm(first + i).value * power(from.unit(), -step * (i + 1))); a != 0) found[step * (i + 1)] = a;
     return found;
   };
   const Indexed r = coefficients(3, r_count, 2), z = coefficients(3 + r_count, z_count, 1);
