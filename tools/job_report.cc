@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "lib/output/progress.h"
+#include "lib/prescription/keys.h"
 #include "tools/load.h"
 #include "tools/version.h"
 
@@ -37,6 +38,12 @@ output::Report make_report(const prescription::Model& model, const scene::Compil
   report.eye = model.eye;
   report.fields_are_heights = model.fields.kind == prescription::FieldKind::object_heights_mm;
   for (const auto& field : model.fields.points) report.fields.push_back({field.x, field.y});
+  if (!model.fields.given_points.empty()) {
+    const std::string_view plural = prescription::field_keys[static_cast<std::size_t>(model.fields.given_kind)].name;  // "real_image_heights_mm"
+    const std::size_t unit = plural.rfind('_');
+    report.given_field = std::string(plural.substr(0, unit - 1)) + std::string(plural.substr(unit));
+    for (const auto& field : model.fields.given_points) report.given_fields.push_back({field.x, field.y});
+  }
   report.wavelengths_nm = model.wavelengths_nm;
   for (const auto& surface : model.surfaces) {
     report.surface_names.push_back(surface.name);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "lib/prescription/reader.h"
+#include "tools/solve_fields.h"
 
 namespace sagitta::tools {
 
@@ -23,6 +24,7 @@ LoadedModel load_model(const std::string& file, const prescription::Settings& se
   prescription::ReadResult read = prescription::read_prescription(file, settings);
   if (report(read.findings)) {
     prescription::Model& model = *read.model;
+    if (!report(prescription::in_order(solve_fields(model), model.documents))) return {std::nullopt, 1};
     if (model.name.empty() && !model.parameters.empty()) model.name = std::filesystem::path(file).stem().string();
     for (const auto& [name, value] : model.parameters) model.name += fmt::format(", {} = {}", name, value);
     return {std::move(read.model)};

@@ -11,6 +11,7 @@
 #include "lib/prescription/study_reader.h"
 #include "tools/commands.h"
 #include "tools/load.h"
+#include "tools/solve_fields.h"
 #include "tools/pictures.h"
 #include "tools/study_page.h"
 #include "tools/study_plan.h"
@@ -36,7 +37,7 @@ std::optional<prescription::StudyFile> load_study(const std::string& name, const
   }
   if (is_of_the_other_kind(*file, "sagitta", "this is a system, not a study", fmt::format("give it with --system: sagitta study --system {} -o {}", *file, folder))) return std::nullopt;
   prescription::StudyReadResult read = prescription::read_study(*file);
-  if (!report(read.findings)) return std::nullopt;
+  if (!report(read.findings) || !report(solve_fields(read.study->system))) return std::nullopt;
   return std::move(read.study);
 }
 

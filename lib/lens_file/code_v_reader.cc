@@ -61,8 +61,8 @@ class CodeVReader {
     static constexpr std::array of_system{Command{"RDM", &C::take_radius_mode}, Command{"TIT", &C::take_title}, Command{"DIM", &C::take_unit}, Command{"EPD", &C::take_aperture},
                                           Command{"FNO", &C::take_aperture}, Command{"NA", &C::take_aperture}, Command{"NAO", &C::take_aperture}, Command{"WL", &C::take_wavelengths},
                                           Command{"REF", &C::take_reference}, Command{"XAN", &C::take_fields}, Command{"YAN", &C::take_fields}, Command{"XOB", &C::take_fields},
-                                          Command{"YOB", &C::take_fields}, Command{"XIM", &C::leave_out_fields}, Command{"YIM", &C::leave_out_fields}, Command{"XRI", &C::leave_out_fields},
-                                          Command{"YRI", &C::leave_out_fields}, Command{"VUX", &C::take_vignetting}, Command{"VLX", &C::take_vignetting}, Command{"VUY", &C::take_vignetting},
+                                          Command{"YOB", &C::take_fields}, Command{"XIM", &C::take_fields}, Command{"YIM", &C::take_fields}, Command{"XRI", &C::take_fields},
+                                          Command{"YRI", &C::take_fields}, Command{"VUX", &C::take_vignetting}, Command{"VLX", &C::take_vignetting}, Command{"VUY", &C::take_vignetting},
                                           Command{"VLY", &C::take_vignetting}, Command{"TEM", &C::take_environment}, Command{"PRE", &C::take_environment}, Command{"PIM", &C::take_image_solve}};
     static constexpr std::array of_surface{Command{"RDY", &C::take_radius}, Command{"CUY", &C::take_curvature}, Command{"THI", &C::take_thickness}, Command{"GLA", &C::take_glass},
                                            Command{"RMD", &C::take_mode}, Command{"SLB", &C::take_name}, Command{"STO", &C::take_stop}, Command{"SPH", &C::take_sphere},
@@ -203,16 +203,14 @@ class CodeVReader {
     reference_place_ = numbers_.place(statement);
   }
   void take_fields(const Statement& statement) {
-    const FieldKind kind = statement.name()[1] == 'O' ? FieldKind::object_heights_mm : FieldKind::angles_deg;
+    const char letter = statement.name()[1];  // of XAN, XOB, XIM, XRI
+    const FieldKind kind = letter == 'A' ? FieldKind::angles_deg : letter == 'O' ? FieldKind::object_heights_mm : letter == 'I' ? FieldKind::paraxial_image_heights_mm : FieldKind::real_image_heights_mm;
     lens_.fields_place = numbers_.place(statement);
     if (has_fields_ && kind != lens_.field_kind) return report_.broken(lens_.fields_place, fmt::format("{}: fields of another kind before", statement.name()));
     has_fields_ = true, lens_.field_kind = kind;
     std::vector<Real>& values = statement.name()[0] == 'X' ? x_fields_ : y_fields_;
     values = numbers_.list(statement, 1).value_or(std::vector<Real>{});
     if (values.size() > static_cast<std::size_t>(most_fields)) values.resize(static_cast<std::size_t>(most_fields));
-  }
-  void leave_out_fields(const Statement& statement) {
-    report_.left_out(numbers_.place(statement), fmt::format("{}: fields as {} image heights", statement.name(), statement.name()[1] == 'I' ? "paraxial" : "real"));
   }
   void take_vignetting(const Statement& statement) {
     const std::optional<std::vector<Real>> factors = numbers_.list(statement, 1);
@@ -320,7 +318,7 @@ void CodeVReader::finish() {
   if (reference_ && static_cast<std::size_t>(*reference_) > count) report_.broken(reference_place_, fmt::format("REF: there are {} wavelengths", count));
   lens_.primary = static_cast<std::size_t>(reference_.value_or(static_cast<int>(count + 1) / 2)) - (count > 0 ? 1 : 0);
   const auto field = [&](const std::vector<Real>& values, std::size_t i) {
-    return i < values.size() ? static_cast<double>(values[i] * (lens_.field_kind == FieldKind::object_heights_mm ? unit_ : 1)) : 0;
+    return i < values.size() ? static_cast<double>(values[i] * (lens_.field_kind == FieldKind::angles_deg ? 1 : unit_)) : 0;
   };
   for (std::size_t i = 0; i < std::max(x_fields_.size(), y_fields_.size()); ++i) lens_.fields.emplace_back(field(x_fields_, i), field(y_fields_, i));
   const CodeVSurface& object = surfaces_.front();
@@ -342,6 +340,7 @@ void CodeVReader::finish() {
   const bool has_stop = std::any_of(lens_.surfaces.begin(), lens_.surfaces.end(), [](const Surface& one) { return one.stop; });
   if (!has_stop) report_.warning({file_}, "no STO: surface 1 is taken as the stop");
   if (!has_stop) lens_.surfaces.front().stop = true;
+  lens_.aims = !lens_.surfaces.front().stop;  // that program aims every ray; a stop that stands first is its own pupil
   finish_aperture();
 }
 

@@ -80,6 +80,7 @@ struct Lens {
   std::vector<double> wavelengths_nm;
   std::size_t primary = 0;  // place in wavelengths_nm
   std::optional<Aperture> aperture;
+  bool aims = false;        // rays, at the stop
   prescription::FieldKind field_kind = prescription::FieldKind::angles_deg;
   std::vector<std::pair<double, double>> fields;  // empty: on the axis
   Place fields_place;

@@ -126,7 +126,7 @@ std::string head_comment(const Lens& lens, const std::string& file, const std::v
   std::string remarks = "What clips rays in it is an aperture that was set, not the size that a surface is drawn with.";
   for (const std::string& remark : lens.remarks) remarks += " " + harmless(remark);
   for (std::size_t i = 0; i < places.size(); ++i)
-    if (lens.surfaces[i].stop && places[i].is_moved()) remarks += " The stop is moved off the axis or tilted: rays are launched through the paraxial pupil on the axis, unless they are aimed.";
+    if (!lens.aims && lens.surfaces[i].stop && places[i].is_moved()) remarks += " The stop is moved off the axis or tilted: rays are launched through the paraxial pupil on the axis, unless they are aimed.";
   if (std::any_of(places.begin(), places.end(), [](const Placed& one) { return one.is_moved(); }))
     remarks += " Places and angles of moved surfaces are from the axis of the first one, which stays straight; thicknesses are along the light, as in the file.";
   text += comment(remarks);
@@ -168,7 +168,7 @@ std::string prescription_text(const Lens& lens, const std::string& file, const s
   for (const double nm : lens.wavelengths_nm) list += (list.empty() ? "" : ", ") + number_text(nm);
   text += wrapped("wavelengths_nm: [" + list + "]", "  ") + "\n";
   if (lens.primary != 0) text += fmt::format("primary_nm: {}\n", number_text(lens.wavelengths_nm[lens.primary]));
-  text += fmt::format("aperture: {{{}: {}}}\n", prescription::aperture_keys[static_cast<std::size_t>(lens.aperture->kind)].name, number_text(lens.aperture->value));
+  text += fmt::format("aperture: {{{}: {}{}}}\n", prescription::aperture_keys[static_cast<std::size_t>(lens.aperture->kind)].name, number_text(lens.aperture->value), lens.aims ? ", aim: stop" : "");
   list.clear();
   for (const auto& [x, y] : lens.fields) list += fmt::format("{}[{}, {}]", list.empty() ? "" : ", ", number_text(x), number_text(y));
   if (!list.empty()) text += wrapped(fmt::format("fields: {{{}: [{}]}}", prescription::field_keys[static_cast<std::size_t>(lens.field_kind)].name, list), "  ") + "\n";

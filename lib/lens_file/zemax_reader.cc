@@ -173,8 +173,9 @@ class ZemaxReader {
   }
   void take_catalogs(const Statement& statement) { lens_.remarks.push_back(fmt::format("Its glasses are of {}.", prescription::excerpt(statement.rest))); }
   void take_ray_aiming(const Statement& statement) {
-    if (statement.words.size() > 2 && numbers_.whole(statement, 2, 0, 2).value_or(0) != 0)
-      report_.left_out(numbers_.place(statement.words[2]), "RAIM: ray aiming at the stop", "rays are launched through the paraxial entrance pupil instead");
+    const int how = statement.words.size() > 2 ? numbers_.whole(statement, 2, 0, 2).value_or(0) : 0;
+    lens_.aims = how == 2;
+    if (how == 1) report_.left_out(numbers_.place(statement.words[2]), "RAIM: paraxial ray aiming", "`aim: stop` in aperture aims real rays");
   }
   void take_configurations(const Statement& statement) {
     if (numbers_.whole(statement, 1, 0, 10000).value_or(0) > 1) report_.left_out(numbers_.place(statement), "MNUM: other configurations than the one of the surfaces");
@@ -282,12 +283,11 @@ void ZemaxReader::finish_fields() {
     if (factors && std::any_of(factors->begin(), factors->begin() + static_cast<std::ptrdiff_t>(std::min(count, factors->size())), [](Real one) { return one != 0; }))
       report_.left_out(numbers_.place(statement), fmt::format("{}: vignetting factors", statement.name()), "apertures of surfaces clip rays instead");
   }
-  if (field_type_.value > 1) {
-    report_.left_out(field_type_.place, field_type_.value == 2 ? "FTYP: fields as paraxial image heights" : field_type_.value == 3 ? "FTYP: fields as real image heights" : "FTYP: a kind of field that is not known");
-    return;
-  }
-  lens_.field_kind = field_type_.value == 1 ? prescription::FieldKind::object_heights_mm : prescription::FieldKind::angles_deg;
-  const auto value = [&](const std::vector<Real>& values, std::size_t i) { return i < values.size() ? static_cast<double>(values[i] * (field_type_.value == 1 ? unit_ : 1)) : 0; };
+  using prescription::FieldKind;
+  constexpr FieldKind kinds[] = {FieldKind::angles_deg, FieldKind::object_heights_mm, FieldKind::paraxial_image_heights_mm, FieldKind::real_image_heights_mm};
+  if (field_type_.value >= std::size(kinds)) return report_.left_out(field_type_.place, "FTYP: a kind of field that is not known");
+  lens_.field_kind = kinds[static_cast<std::size_t>(field_type_.value)];
+  const auto value = [&](const std::vector<Real>& values, std::size_t i) { return i < values.size() ? static_cast<double>(values[i] * (lens_.field_kind == FieldKind::angles_deg ? 1 : unit_)) : 0; };
   for (std::size_t i = 0; i < count; ++i) lens_.fields.emplace_back(value(x_fields_, i), value(y_fields_, i));
 }
 

@@ -30,6 +30,8 @@ struct Report {
   std::string eye;  // "right", "left"; "": not said, or not an eye
   bool fields_are_heights = false;
   std::vector<std::array<double, 2>> fields;  // degrees, or mm
+  std::string given_field;                    // where they were given as another quantity: its name with its unit, "real_image_height_mm"
+  std::vector<std::array<double, 2>> given_fields;
   std::vector<double> wavelengths_nm;
   std::vector<std::string> surface_names;     // [0] of surface 1
   std::vector<int> surfaces_of_flat_facets;   // their numbers: wavefronts behind one are of no use, which is said

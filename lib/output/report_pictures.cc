@@ -13,6 +13,13 @@ namespace sagitta::output {
 namespace {
 
 std::string field_label(const Report& report, std::size_t field) {
+  if (!report.given_fields.empty()) {  // "real image height (0, 2) mm"
+    const auto& [x, y] = report.given_fields[field];
+    const bool are_angles = report.given_field.ends_with("_deg");
+    std::string name = report.given_field.substr(0, report.given_field.rfind('_'));
+    std::replace(name.begin(), name.end(), '_', ' ');
+    return are_angles ? fmt::format("{} ({:g}°, {:g}°)", name, x, y) : fmt::format("{} ({:g}, {:g}) mm", name, x, y);
+  }
   const auto& [x, y] = report.fields[field];
   return report.fields_are_heights ? fmt::format("object ({:g}, {:g}) mm", x, y) : fmt::format("field ({:g}°, {:g}°)", x, y);
 }

@@ -132,9 +132,10 @@ std::string significant(double value) { return std::isfinite(value) ? fmt::forma
 std::string percent(double share) { return std::isfinite(share) ? fmt::format("{:.2f}", 100 * share) : "-"; }
 
 ordered_json place_json(const Report& report, const analysis::JobResult& result) {
-  return {{"field", result.field},
-          {report.fields_are_heights ? "object_height_mm" : "angle_deg", report.fields[result.field]},
-          {"wavelength_nm", report.wavelengths_nm[result.wavelength]}};
+  ordered_json json{{"field", result.field}, {report.fields_are_heights ? "object_height_mm" : "angle_deg", report.fields[result.field]}};
+  if (!report.given_fields.empty()) json[report.given_field] = report.given_fields[result.field];
+  json["wavelength_nm"] = report.wavelengths_nm[result.wavelength];
+  return json;
 }
 
 ordered_json report_json(const Report& report) {

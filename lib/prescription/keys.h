@@ -106,7 +106,17 @@ inline constexpr std::array field_keys{
                   .range = {-90, 90, true}},
     numerics::Key{.name = "object_heights_mm",
                   .kind = numerics::ValueKind::list,
-                  .meaning = "pairs [x, y] of points in the object plane; finite object only"}};
+                  .meaning = "pairs [x, y] of points in the object plane; finite object only"},
+    numerics::Key{.name = "visual_angles_deg",
+                  .kind = numerics::ValueKind::list,
+                  .meaning = "pairs [x, y] of angles as the front nodal point sees them",
+                  .range = {-90, 90, true}},
+    numerics::Key{.name = "paraxial_image_heights_mm",
+                  .kind = numerics::ValueKind::list,
+                  .meaning = "pairs [x, y] of the fields' paraxial images"},
+    numerics::Key{.name = "real_image_heights_mm",
+                  .kind = numerics::ValueKind::list,
+                  .meaning = "pairs [x, y] on the image surface that the fields' chief rays meet"}};
 
 inline constexpr std::array object_keys{
     numerics::Key{.name = "distance_mm",

@@ -28,14 +28,19 @@ struct Aperture {
   Place place;
 };
 
-enum class FieldKind { angles_deg, object_heights_mm };
+enum class FieldKind { angles_deg, object_heights_mm, visual_angles_deg, paraxial_image_heights_mm, real_image_heights_mm };
+// compile() takes the first two kinds; the others become one of these before (trace/fields.h).
 struct Fields {
   FieldKind kind = FieldKind::angles_deg;
   struct Point {
     double x = 0, y = 0;
   };
   std::vector<Point> points{{0, 0}};  // the default: on the axis
+  FieldKind given_kind = FieldKind::angles_deg;
+  std::vector<Point> given_points;  // as they were given, where that was another kind; else empty
   Place place;
+
+  bool are_solved() const { return kind == FieldKind::angles_deg || kind == FieldKind::object_heights_mm; }
 };
 
 struct Object {

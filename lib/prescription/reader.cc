@@ -71,7 +71,7 @@ Fields read_fields(const YamlNode& node, Findings& findings) {
   const YamlNode::Entry* given = section.one_of(field_keys, true);
   Fields fields;
   if (!given) return fields;
-  fields = {kind_of<FieldKind>(given->key, field_keys), {}, given->value->place};
+  fields.kind = kind_of<FieldKind>(given->key, field_keys), fields.points.clear(), fields.place = given->value->place;
   const numerics::Range& range = field_keys[static_cast<std::size_t>(fields.kind)].range;
   read_list(*given->value, given->key, "at least one pair [x, y]", findings, [&](const YamlNode& item) {
     if (const auto xy = read_tuple(item, "each of " + given->key, "xy", range, findings))

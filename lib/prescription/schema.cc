@@ -109,7 +109,7 @@ ordered_json special(const Key& key) {
   if (key.name == "grin") return gradient_schema();
   if (key.name == "aperture") return with_one_of(mapping(aperture_section_keys), aperture_keys);
   if (key.name == "fields") return with_one_of(mapping(field_keys), field_keys);
-  if (key.name == "angles_deg" || key.name == "object_heights_mm") return list_of(tuple_of(key.range, 2), 1);
+  if (key.name.ends_with("angles_deg") || key.name.ends_with("_heights_mm")) return list_of(tuple_of(key.range, 2), 1);
   if (key.name == "object") return mapping(object_keys);
   if (key.name == "surfaces") return list_of({{"$ref", "#/definitions/surface"}}, 0);
   if (key.name == "wavelengths_nm") {

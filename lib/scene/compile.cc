@@ -202,6 +202,7 @@ CompileResult compile_for(const Model& model, const Beam& beam) {
   compile_gradients(model, scene, findings);
   result.dispersive_gaps = count_dispersive_gaps(model);
   scene.object.z = -model.object.distance_mm;
+  if (!model.fields.are_solved()) findings.error(model.fields.place, "these fields are not solved for yet");
   scene.fields = compile_fields(model.fields);
   Clouds clouds(model.surfaces.size());
   std::vector<int> waiting;  // for the beam

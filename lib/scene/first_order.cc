@@ -144,6 +144,7 @@ FirstOrder first_order(const Scene& scene, const Wavelength& wavelength, double 
                                 ? parallel
                                 : paraxial.through({(z_first - scene.object.z) / n, 1}, 1, last);
   result.image_z = z_last + crossing(axial, n_after);
+  result.image_scale = scene.object.at_infinity() ? n / result.power : 1 / axial.slope();
   return result;
 }
 

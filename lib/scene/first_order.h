@@ -11,6 +11,9 @@
 //   effective focal length 1/P,   rear focal length n'/P,   front focal length -n/P
 //   F' = last vertex + n' a/P,   F = first vertex - n d/P                                                            (2)
 //   H' = F' - n'/P,   H = F + n/P,   N' = F' - n/P,   N = F + n'/P                                                   (3)
+// The image of a collimated bundle whose direction has the tangent t, or of an object point at the height t, lies at the height s t; V and V' are of the ray from the
+// axial object point:
+//   s = n/P (object at infinity),   s = V/V' (the lateral magnification)                                             (4)
 // Pupils: the stop's centre imaged backwards through the surfaces before it, and forwards through the others (its own
 // refraction, if it has any, is behind it).
 // A quantity that does not exist (afocal system, pupil at infinity) is NaN here and null in outputs.
@@ -34,6 +37,7 @@ struct FirstOrder {
   double front_focal_point, rear_focal_point, front_principal_point, rear_principal_point, front_nodal_point,
       rear_nodal_point;    // global z
   Pupil entrance_pupil, exit_pupil;
+  double image_scale;      // (4), mm or mm per mm; infinite if the image is afocal
   double image_z;          // of the paraxial image of the axial object point, global; infinite if the image is afocal
 };
 

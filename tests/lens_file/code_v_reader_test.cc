@@ -37,6 +37,15 @@ surfaces:
 )yaml");
 }
 
+// Lengths of fields are in its dimension, as all are; that program's rays pass its stop.
+TEST(CodeVFile, may_have_image_heights_and_aims) {
+  std::string text = sequence("S 0.5 0.1 NBK7_SCHOTT\nS -2 3\n STO\nSI 0 0\n");
+  text.replace(text.find("DIM   M"), 7, "DIM   I").replace(text.find("XAN"), 3, "XRI").replace(text.find("YAN   0.0 10.0"), 14, "YRI   0.0 1.0");
+  EXPECT_THAT(import_text("lens.seq", text).prescription, HasSubstr("aperture: {entrance_pupil_diameter_mm: 101.6, aim: stop}\nfields: {real_image_heights_mm: [[0, 0], [0, 25.4]]}\n"));
+  text.replace(text.find("XRI"), 3, "XIM").replace(text.find("YRI"), 3, "YIM");
+  EXPECT_THAT(import_text("lens.seq", text).prescription, HasSubstr("fields: {paraxial_image_heights_mm: [[0, 0], [0, 25.4]]}\n"));
+}
+
 TEST(CodeVFile, gives_curvatures_where_it_says_so) {
   EXPECT_THAT(import_text("lens.seq", sequence("S 0.02 4 NBK7_SCHOTT\nSTO\nS -0.0125 60\nSI 0 0\n", "RDM N")).prescription, HasSubstr("conic: {radius_mm: 50}, thickness_mm: 4"));
   EXPECT_THAT(import_text("lens.seq", sequence("S 0 0; CUY 0.02; THI 4\nSTO\nS 0.1 60; RDY S2 -80\nSI 0 0\nTHI S1 3.5; GLA S1 NBK7_SCHOTT\n", "RDM N")).prescription,

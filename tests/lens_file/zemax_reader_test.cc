@@ -119,6 +119,13 @@ TEST(ZemaxAperture, is_told_in_one_of_four_ways) {
   };
   EXPECT_THAT(with("ENPD 3"), HasSubstr("aperture: {entrance_pupil_diameter_mm: 3}"));
   EXPECT_THAT(with("FNUM 2.1 0"), HasSubstr("aperture: {image_f_number: 2.1}"));
+  EXPECT_THAT(with("ENPD 3\nRAIM 0 2 1"), HasSubstr("aperture: {entrance_pupil_diameter_mm: 3, aim: stop}"));
+  const auto of_fields = [&](const std::string& kind) {
+    std::string text = zemax_with("TYPE STANDARD\nCURV 0.05\nDISZ 5");
+    return import_text("lens.zmx", text.replace(text.find("FTYP 0"), 6, "FTYP " + kind).replace(text.find("YFLN 0"), 6, "YFLN 8")).prescription;
+  };
+  EXPECT_THAT(of_fields("2"), HasSubstr("fields: {paraxial_image_heights_mm: [[0, 8]]}"));
+  EXPECT_THAT(of_fields("3"), HasSubstr("fields: {real_image_heights_mm: [[0, 8]]}"));
   // FLOA: the semi-diameter of the stop; its beam is not clipped there as well
   std::string text = zemax_with("TYPE STANDARD\nCURV 0.05\nDISZ 5\nFLAP 0 1.5 0");
   text.replace(text.find("ENPD 4.0E+0"), 11, "FLOA");
