@@ -134,7 +134,8 @@ TEST(ImportCommand, solves_the_image_of_CODE_Vs_double_Gauss) {
     const std::string system = imported(folder, "ag_dblgauss.seq", double_gauss_with(thickness));
     EXPECT_NEAR(first_order(folder, system)["back_focal_length_mm"], 61.4875364179821, 1e-12);
     EXPECT_NEAR(first_order(folder, system)["effective_focal_length_mm"], 100.0038, 5e-5);
-    const auto here = parse_rays(run_program("rays " + system + " --field 2 --wavelength 587.6 --pupil 0.3,-0.9").out), there = parse_rays(run_program("rays " + systems + "double-gauss.yaml --field 2 --wavelength 587.6 --pupil 0.3,-0.9").out);
+    const std::string aimed = folder.file("aimed.yaml", "sagitta: 1\nextends: " + systems + "double-gauss.yaml\naperture: {entrance_pupil_diameter_mm: 50, aim: stop}\n"), ray = " --field 2 --wavelength 587.6 --pupil 0.3,-0.9";
+    const auto here = parse_rays(run_program("rays " + system + ray).out), there = parse_rays(run_program("rays " + aimed + ray).out);
     ASSERT_EQ(here.size(), 12u);
     ASSERT_EQ(there.size(), 12u);
     EXPECT_NEAR(here[11].x, there[11].x, 1e-11);  // radii and thicknesses are written with 16 digits there
