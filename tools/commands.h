@@ -59,10 +59,11 @@ struct RaysOptions : SystemOptions {
 };
 int rays_command(const RaysOptions& options);
 
-struct RefractionOptions {
+struct RefractionOptions : SystemOptions {
   std::string system;
   double vertex_distance_mm = 0;
   std::string spectrum;  // "400:700:10"; "": the system's wavelengths
+  std::string picture;   // FILE.png or FILE.svg; "": none
   int thread_count = 0;
   bool json = false;
 };

@@ -41,22 +41,21 @@ std::optional<scene::CompileResult> load_scene(const prescription::Model& model,
 }
 
 bool set_wavelengths(prescription::Model& model, const std::vector<double>& wavelengths_nm, const std::string& who) {
-  bool covered = true;
-  std::set<std::pair<std::string, double>> told;
-  const auto check = [&](const medium::Medium& medium, double nm) {
-    if (medium.covers(nm / 1000) || !told.emplace(medium.name, nm).second) return;
-    covered = false;
-    fmt::print(stderr, "sagitta {}: {:g} nm lies outside the range of {}, {:g} to {:g} nm\n", who, nm, medium.name,
-               medium.shortest_um * 1e3, medium.longest_um * 1e3);
+  std::set<std::string> told;
+  const auto check = [&](const medium::Medium& medium) {
+    std::vector<double> beyond;
+    for (const double nm : wavelengths_nm)
+      if (!medium.covers(nm / 1000)) beyond.push_back(nm);
+    if (beyond.empty() || !told.insert(medium.name).second) return;
+    fmt::print(stderr, "sagitta {}: {:g} nm{} outside the range of {}, {:g} to {:g} nm\n", who, beyond.front(), beyond.size() == 1 ? " lies" : fmt::format(" and {} more lie", beyond.size() - 1),
+               medium.name, medium.shortest_um * 1e3, medium.longest_um * 1e3);
   };
-  for (const double nm : wavelengths_nm) {
-    check(model.object.medium, nm);
-    for (const auto& surface : model.surfaces)
-      if (surface.medium) check(*surface.medium, nm);
-  }
+  check(model.object.medium);
+  for (const auto& surface : model.surfaces)
+    if (surface.medium) check(*surface.medium);
   model.primary_nm = model.primary_wavelength_nm();
   model.wavelengths_nm = wavelengths_nm;
-  return covered;
+  return told.empty();
 }
 
 }  // namespace sagitta::tools

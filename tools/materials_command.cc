@@ -8,13 +8,11 @@
 
 #include "lib/medium/figures.h"
 #include "lib/medium/spectral_lines.h"
-#include "lib/output/atomic_file.h"
 #include "lib/output/media_report.h"
 #include "lib/prescription/check.h"
 #include "lib/prescription/material_search.h"
 #include "tools/commands.h"
 #include "tools/load.h"
-#include "tools/pictures.h"
 #include "tools/version.h"
 #include "tools/write.h"
 
@@ -116,10 +114,7 @@ bool write_plot(const std::string& file, const std::vector<Material>& materials,
     const bool is_bounded = !is_meant_for_any_wavelength(material);
     curves.push_back(curve_of(material, is_bounded ? material.shortest_um : shortest, is_bounded ? material.longest_um : longest));
   }
-  const Pictures* made = pictures("materials");
-  if (!made || !make_folder("materials", fs::path(file).parent_path())) return false;
-  const output::Chart chart = media_chart(media, curves, version());
-  return written("materials", fs::path(file).extension() == ".svg" ? output::write_file(file, made->chart_svg(chart)) : made->write_png(file, made->render_chart(chart)));
+  return write_chart_file("materials", file, media_chart(media, curves, version()));
 }
 
 bool is_well_used(const MaterialsOptions& options) {
@@ -129,9 +124,7 @@ bool is_well_used(const MaterialsOptions& options) {
   };
   if (options.names.empty() && !options.wavelengths_nm.empty()) return refuse("--at evaluates media that are named: give a NAME");
   if (options.names.empty() && !options.picture.empty()) return refuse("-o plots media that are named: give a NAME");
-  const std::string ending = fs::path(options.picture).extension().string();
-  if (!options.picture.empty() && ending != ".png" && ending != ".svg") return refuse("-o: the picture's name must end in .png or .svg");
-  return true;
+  return names_chart("materials", options.picture);
 }
 
 }  // namespace

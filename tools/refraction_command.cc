@@ -12,6 +12,7 @@
 #include "tools/commands.h"
 #include "tools/job_report.h"
 #include "tools/load.h"
+#include "tools/write.h"
 
 namespace sagitta::tools {
 namespace {
@@ -47,8 +48,9 @@ int refraction_command(const RefractionOptions& options) {
     fmt::print(stderr, "sagitta refraction: --spectrum {}: expected FROM:TO:STEP in nm, such as 400:700:10, of at most {} wavelengths\n", options.spectrum, most_of_spectrum);
     return 2;
   }
-  auto model = load_model(options.system);
-  if (!model) return 1;
+  if (!names_chart("refraction", options.picture)) return 2;
+  auto model = load_model(options.system, options.settings);
+  if (!model) return model.status;
   if (spectrum && !set_wavelengths(*model, *spectrum, "refraction")) return 1;
   const auto compiled = load_scene(*model);
   if (!compiled) return 1;
@@ -60,6 +62,7 @@ int refraction_command(const RefractionOptions& options) {
       report.results[i] = analysis::refraction(scene, scene.wavelengths[i % scene.wavelengths.size()], scene.fields[i / scene.wavelengths.size()], {.vertex_distance = options.vertex_distance_mm, .wavefront = {}});
     };
   });
+  if (!options.picture.empty() && !write_chart_file("refraction", options.picture, refraction_chart(report))) return 1;
   fmt::print("{}", options.json ? refraction_json(report) : refraction_text(report));
   const bool any = std::any_of(report.results.begin(), report.results.end(), [](const auto& result) { return result.refraction.has_value(); });
   if (!any) fmt::print(stderr, "sagitta refraction: no field has a refraction\n");

@@ -125,6 +125,8 @@ void add_refraction(CLI::App& app, int& status) {
   command->add_option("--spectrum", options.spectrum, "FROM:TO:STEP in nm in place of the system's wavelengths, for the longitudinal chromatic aberration");
   command->add_option("--threads", options.thread_count, "threads (default: as many as the machine runs)")->check(CLI::Range(1, 1024));
   command->add_flag("--json", options.json, "print JSON in place of the table");
+  command->add_option("-o,--output", options.picture, "picture of M against wavelength, .png or .svg");
+  add_settings(*command, options);
   command->callback([&status] { status = refraction_command(options); });
 }
 

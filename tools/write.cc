@@ -54,6 +54,19 @@ bool write_chart(const char* command, const std::filesystem::path& base, const o
   return written(command, made->write_png(base.string() + ".png", made->render_chart(chart))) && svg_is_written;
 }
 
+bool names_chart(const char* command, const std::string& file) {
+  const std::string ending = std::filesystem::path(file).extension().string();
+  const bool is_good = file.empty() || ending == ".png" || ending == ".svg";
+  if (!is_good) fmt::print(stderr, "sagitta {}: -o: the picture's name must end in .png or .svg\n", command);
+  return is_good;
+}
+
+bool write_chart_file(const char* command, const std::filesystem::path& file, const output::Chart& chart) {
+  const Pictures* made = pictures(command);
+  if (!made || !make_folder(command, file.parent_path())) return false;
+  return written(command, file.extension() == ".svg" ? output::write_file(file.string(), made->chart_svg(chart)) : made->write_png(file.string(), made->render_chart(chart)));
+}
+
 bool write_picture(const char* command, const std::filesystem::path& file, const output::Figure& figure) {
   const Pictures* made = pictures(command);
   return made && written(command, made->write_png(file.string(), made->render(figure)));

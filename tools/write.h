@@ -29,6 +29,11 @@ bool write_image(const char* command, const std::filesystem::path& base, std::ve
 // BASE.svg and BASE.png, of the same drawing.
 bool write_chart(const char* command, const std::filesystem::path& base, const output::Chart& chart);
 
+// True where a name given as -o ends in .png or .svg, or is empty; else a message.
+bool names_chart(const char* command, const std::string& file);
+// One of the two, as the name ends; its folder is made.
+bool write_chart_file(const char* command, const std::filesystem::path& file, const output::Chart& chart);
+
 // The figure alone, as a PNG.
 bool write_picture(const char* command, const std::filesystem::path& file, const output::Figure& figure);
 

@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <optional>
+#include <utility>
 
 #include "lib/output/summary_internal.h"
 #include "lib/output/text.h"
@@ -86,6 +89,34 @@ std::string refraction_text(const RefractionReport& report) {
       below += fmt::format("longitudinal chromatic aberration of field {}: {} D from {:g} to {:g} nm (paraxial M)\n", field, dioptres(one->dioptres), one->shortest_nm, one->longest_nm);
   return fmt::format("{}: refraction at {}; {}\n{}; entrance pupil {} mm wide\n\n{}{}{}", printable(system.system, 200), plane_of(report), eye_of(report), frame,
                      significant(2 * system.first_order.entrance_pupil.semi_diameter), to_text(table), below.empty() ? "" : "\n", below);
+}
+
+Chart refraction_chart(const RefractionReport& report) {
+  using analysis::Refraction;
+  const Report& system = report.system;
+  const std::vector<double>& nm = system.wavelengths_nm;
+  Chart chart;
+  chart.title = fmt::format("Refraction of {}", system.system);
+  chart.x_label = "wavelength (nm)";
+  chart.y_label = system.fields.size() == 1 ? "M (D)" : "paraxial M (D)";
+  chart.x_scale = chart.y_scale = AxisScale::linear;
+  chart.footer = fmt::format("at {}; sagitta {}", plane_of(report), system.version);
+  chart.empty_note = "no field has a refraction";
+  const auto add = [&](std::string name, std::size_t field, const std::function<std::optional<Power>(const Refraction&)>& power) {
+    ChartSeries series{.name = std::move(name), .points = {}, .is_joined = true, .fit = {}};
+    for (std::size_t w = 0; w < nm.size(); ++w)
+      if (const auto& one = report.results[field * nm.size() + w].refraction)
+        if (const auto found = power(*one)) series.points.push_back({nm[w], found->M()});
+    std::sort(series.points.begin(), series.points.end(), [](const ChartPoint& a, const ChartPoint& b) { return a.x < b.x; });
+    chart.series.push_back(std::move(series));
+  };
+  const auto paraxial = [](const Refraction& one) { return std::optional(one.paraxial); };
+  for (std::size_t field = 0; field < system.fields.size() && system.fields.size() > 1; ++field)
+    add(fmt::format("({:g}, {:g}) {}", system.fields[field][0], system.fields[field][1], system.fields_are_heights ? "mm" : "deg"), field, paraxial);
+  if (system.fields.size() > 1) return chart;
+  add("least squares", 0, [](const Refraction& one) { return one.least_squares; });
+  add("paraxial", 0, paraxial);
+  return chart;
 }
 
 std::string refraction_json(const RefractionReport& report) {

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `sagitta refraction` takes, tells and draws; its values are of tests/analysis/refraction_test.cc and published_systems_test.cc.
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/program.h"
+
+namespace sagitta::test {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+const std::string systems = SAGITTA_SOURCE_DIR "/systems/";
+
+json refraction(const std::string& arguments) {
+  const Outcome run = run_program("refraction " + arguments + " --json");
+  EXPECT_EQ(run.status, 0) << run.err;
+  return json::parse(run.out);
+}
+double paraxial_M(const json& result) { return result["refraction"]["paraxial"]["M_D"]; }
+
+TEST(RefractionCommand, sets_parameters_and_moves_the_plane) {
+  const json at_cornea = refraction(systems + "arizona-eye.yaml --set accommodation_D=2")["results"][0];
+  EXPECT_NEAR(paraxial_M(at_cornea), -1.9938, 1e-4);  // references.md, E11
+  const json at_spectacles = refraction(systems + "arizona-eye.yaml --set accommodation_D=2 --vertex-mm 12")["results"][0];
+  EXPECT_NEAR(paraxial_M(at_spectacles), paraxial_M(at_cornea) / (1 + .012 * paraxial_M(at_cornea)), 1e-9);
+  EXPECT_EQ(run_program("refraction " + systems + "arizona-eye.yaml --set accomodation_D=2").status, 2);
+}
+
+// The eyes that it is made after have some 2 D from 400 to 700 nm.
+TEST(RefractionCommand, tells_and_draws_the_chromatic_aberration) {
+  const Folder folder;
+  const json spectrum = refraction(systems + "arizona-eye.yaml --spectrum 400:700:100 -o " + folder.path("new/spectrum.svg"));
+  ASSERT_EQ(spectrum["results"].size() % 4, 0u);
+  EXPECT_EQ(spectrum["results"][1]["wavelength_nm"], 500);
+  const json& chromatic = spectrum["longitudinal_chromatic_aberration"][0];
+  EXPECT_EQ(chromatic["shortest_nm"], 400);
+  EXPECT_EQ(chromatic["longest_nm"], 700);
+  EXPECT_NEAR(chromatic["difference_D"].get<double>(), paraxial_M(spectrum["results"][3]) - paraxial_M(spectrum["results"][0]), 1e-12);
+  EXPECT_GT(chromatic["difference_D"].get<double>(), 1.5);
+  EXPECT_LT(chromatic["difference_D"].get<double>(), 3);
+  EXPECT_THAT(read_text(folder.path("new/spectrum.svg")), HasSubstr("<title>Refraction of "));
+}
+
+TEST(RefractionCommand, refuses_what_it_cannot_draw_or_reach) {
+  const Folder folder;
+  const Outcome gif = run_program("refraction " + systems + "le-grand-eye.yaml -o " + folder.path("a.gif"));
+  EXPECT_EQ(gif.status, 2);
+  EXPECT_THAT(gif.err, HasSubstr("sagitta refraction: -o: the picture's name must end in .png or .svg\n"));
+  const Outcome beyond = run_program("refraction " + systems + "navarro-eye.yaml --spectrum 400:700:100");
+  EXPECT_EQ(beyond.status, 1);
+  EXPECT_THAT(beyond.err, HasSubstr("sagitta refraction: 400 nm and 1 more lie outside the range of navarro-cornea, 458 to 632.8 nm\n"));
+  EXPECT_EQ(run_program("refraction " + systems + "arizona-eye.yaml --spectrum 700:400:10").status, 2);
+}
+
+}  // namespace
+}  // namespace sagitta::test
