@@ -167,7 +167,7 @@ std::int64_t Aim::find_samples() {
   // Where nothing is found about the centre, some from the axis.
   if (std::none_of(samples_.begin(), samples_.end(), [&](const PlaneSearch& one) { return is_found(one); }))
     for (std::size_t ring = rings.size(); ring-- > 0;) {
-      for (std::size_t k = 0; k < azimuths; k += 3) passes += search_from_axis(samples_[place_of(ring, k)]);
+      for (std::size_t k = 0; k < azimuths; ++k) passes += search_from_axis(samples_[place_of(ring, k)]);
       if (std::any_of(samples_.begin(), samples_.end(), [&](const PlaneSearch& one) { return is_found(one); })) break;
     }
   return passes;

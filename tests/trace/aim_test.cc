@@ -236,6 +236,18 @@ TEST(Aim, finds_a_part_without_the_chief_ray) {
 }
 
 // Objects at a finite distance, and beams that are telecentric in object space.
+// Rays go on from a ball of radius 1 alone, beside the axis, and bend nowhere: of the stop a disc about (0, 0.75) is reached, on which no sample about the centre lies.
+TEST(Aim, finds_a_disc_beside_the_centre) {
+  for (const char* field : {"0", "25"}) {
+    const CompiledScene compiled = scene_of("  - {conic: {radius_mm: -1}, decenter_mm: [0, 3, 0], thickness_mm: 0}\n  - {stop: true, thickness_mm: 5}\n  - {}\n", "stop_diameter_mm: 8, aim: stop",
+                                            std::string("fields: {angles_deg: [[0, ") + field + "]]}\n");
+    const Met all = met(compiled.scene, compiled.scene.fields[0], std::vector<PupilPoint>{{0, 0.75}, {0.05, 0.7}, {-0.1, 0.8}}, compiled.wavelength());
+    EXPECT_EQ(all.lost, 0u) << field;
+    EXPECT_LE(all.worst, stated);
+    EXPECT_EQ(met(compiled.scene, compiled.scene.fields[0], std::vector<PupilPoint>{{0, 0}, {0.5, 0}}, compiled.wavelength()).lost, 2u);
+  }
+}
+
 TEST(Aim, from_a_near_object_and_in_a_telecentric_beam) {
   const std::string doublet = "  - {conic: {radius_mm: 20}, thickness_mm: 4, medium: {index: 1.6}}\n  - {conic: {radius_mm: -30}, thickness_mm: 10, decenter_mm: [0, 0.3, 0]}\n";
   for (const char* more : {"object: {distance_mm: 30}\nfields: {object_heights_mm: [[0, 0], [1, -4]]}\n", "object: {distance_mm: -200}\nfields: {angles_deg: [[0, 0], [5, 8]]}\n"}) {
