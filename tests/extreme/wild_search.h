@@ -159,6 +159,7 @@ class Examination {
   }
 
   void laws(const Passage& at, const trace::RayBatch& start, std::size_t i, const std::string& where) {
+    count("at " + kind_of(at));
     hold("within its bound", own_error(at), where);
     hold("on the surface and the ray", off_surface(at), where);
     hold("Snell and coplanarity", snell(at), where);
