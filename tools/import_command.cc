@@ -29,8 +29,11 @@ int import_command(const ImportOptions& options) {
     if (!options.takes_parts) fmt::print(stderr, "sagitta import: {} is not written; --partial leaves out what is only not understood\n", options.file);
     return 1;
   }
+  for (const auto& [path, text] : imported.files)
+    if (overwrites("import", "-o " + options.file, options.lens, {path}, "the lens file") || !written("import", output::write_file(path, text))) return 1;
   if (!written("import", output::write_file(options.file, *imported.prescription))) return 1;
   fmt::print("{}: {} surfaces", options.file, imported.surface_count);
+  for (const auto& file : imported.files) fmt::print(", heights in {}", file.path);
   if (imported.left_out_count > 0) fmt::print(", {} left out: its head comment lists them", imported.left_out_count == 1 ? "1 thing" : fmt::format("{} things", imported.left_out_count));
   fmt::print("\n");
   return 0;

@@ -46,6 +46,22 @@ std::string name_from(const std::string& output, const std::string& catalog) {
   return relative.empty() || relative.starts_with("../..") ? file.string() : relative;
 }
 
+// The data of shapes, as files beside the prescription: LENS-2.dat of surface 2 of LENS.yaml, or data-2.dat where the prescription cannot name LENS as it is.
+std::vector<DataFile> data_files(Lens& lens, const std::string& output) {
+  std::vector<DataFile> files;
+  const std::string lens_name = std::filesystem::path(output).stem().string();
+  const auto is_plain = [](char c) { return c > ' ' && c < 127 && c != '"' && c != '\\'; };
+  const std::string base = lens_name.size() <= 100 && std::all_of(lens_name.begin(), lens_name.end(), is_plain) ? lens_name : "data";
+  for (std::size_t i = 0; i < lens.surfaces.size(); ++i)
+    for (Item& item : lens.surfaces[i].shape.items) {
+      if (item.key != "points") continue;
+      std::filesystem::path file = output;
+      const std::string name = fmt::format("{}-{}.dat", base, i + 1);
+      files.push_back({file.replace_filename(name).string(), std::get<std::string>(std::exchange(item.value, name))});
+    }
+  return files;
+}
+
 // By line of the lens file; what is said of other files stays behind what it was said after.
 Findings in_order(const Findings& findings, const std::string& file) {
   struct Placed {
@@ -82,6 +98,7 @@ Imported import(const ImportRequest& request) {
     if (!report.has_errors()) solve_paraxial_image(*lens, request.output, catalogs, report);
   }
   if (lens && !report.has_errors()) {
+    result.files = data_files(*lens, request.output);
     std::string text = prescription_text(*lens, request.file, names, report);
     const auto value_count = std::count_if(text.begin(), text.end(), [](char c) { return c == ',' || c == ':'; });
     if (text.size() > most_bytes || static_cast<std::size_t>(value_count) > most_values)

@@ -17,8 +17,14 @@ struct ImportRequest {
   bool takes_parts = false;           // what is not understood is left out, with a warning, in place of an error
 };
 
+// A file beside the prescription, which names it.
+struct DataFile {
+  std::string path, text;
+};
+
 struct Imported {
   std::optional<std::string> prescription;  // its text; none where there is an error among the findings
+  std::vector<DataFile> files;              // of the data that it names
   prescription::Findings findings;          // in the order of the lines of the file
   int surface_count = 0, left_out_count = 0;
 };

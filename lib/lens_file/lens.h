@@ -24,7 +24,8 @@ namespace sagitta::lens_file {
 using Real = long double;
 using prescription::Place;
 
-// A shape, or a gradient-index form, as a prescription has it: the kind and its keys with their values, in order. Kind "": a plane.
+// A shape, or a gradient-index form, as a prescription has it: the kind and its keys with their values, in order. Kind "": a plane. Of a shape made of data `points` is
+// the text of their file, until import gives that a name.
 using Indexed = std::map<int, double>;
 struct Item {
   std::string key;

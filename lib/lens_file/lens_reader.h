@@ -25,7 +25,7 @@ std::optional<Lens> read_lens(const std::string& file, Report& report);
 
 // Zemax OpticStudio, sequential (.zmx): lines of an operand of four letters and what belongs to it; those of a surface are indented behind SURF. There is no public
 // specification; the operands are those that public files have. What is read: VERS MODE NAME UNIT, ENPD FNUM OBNA FLOA, FTYP XFLN YFLN, WAVM WAVL PWAV, ENVD GCAT RAIM VDXN
-// VDYN VCXN VCYN VANN MNUM, SURF TYPE STOP CURV CONI DISZ GLAS DIAM PARM XDAT COMM CLAP FLAP OBSC OBDC. Curvatures are 1/unit, radii PARM 1 of BICONICX and TOROIDAL.
+// VDYN VCXN VCYN VANN MNUM, SURF TYPE STOP CURV CONI DISZ GLAS DIAM PARM XDAT COMM CLAP FLAP OBSC OBDC GDAT GARR. Curvatures are 1/unit, radii PARM 1 of BICONICX and TOROIDAL.
 // A tilt of a coordinate break (PARM 3 to 5) turns right-handed, in degrees: positive about x, +y turns toward +z (Zemax, "Rotation Matrix and Tilt About X/Y/Z").
 std::optional<Lens> read_zemax(const std::string& file, const std::string& text, Report& report);
 

@@ -92,7 +92,8 @@ class ZemaxReader {
     static constexpr std::array of_surface{
         Operand{"TYPE", &Z::take_type}, Operand{"STOP", &Z::take_stop}, Operand{"CURV", &Z::take_value}, Operand{"CONI", &Z::take_value}, Operand{"DISZ", &Z::take_thickness},
         Operand{"GLAS", &Z::take_glass}, Operand{"DIAM", &Z::take_semi_diameter}, Operand{"PARM", &Z::take_parameter}, Operand{"XDAT", &Z::take_parameter}, Operand{"COMM", &Z::take_comment},
-        Operand{"CLAP", &Z::take_clip}, Operand{"FLAP", &Z::take_clip}, Operand{"OBSC", &Z::take_clip}, Operand{"OBDC", &Z::take_clip_decenter}};
+        Operand{"CLAP", &Z::take_clip}, Operand{"FLAP", &Z::take_clip}, Operand{"OBSC", &Z::take_clip}, Operand{"OBDC", &Z::take_clip_decenter},
+        Operand{"GDAT", &Z::take_grid}, Operand{"GARR", &Z::take_grid_node}};
     const auto is_it = [&](const auto& one) { return one.name == statement.name(); };
     if (const auto found = std::find_if(of_system.begin(), of_system.end(), is_it); found != of_system.end()) return (this->*found->take)(statement);
     // Behind the surfaces, whose lines are indented, the lines of other things begin in the first column again.
@@ -231,6 +232,29 @@ class ZemaxReader {
   void take_clip_decenter(const Statement& statement) {
     const std::optional<std::vector<Real>> to = numbers_.list(statement, 1);
     surface().clip_is_off_centre = to && std::any_of(to->begin(), to->end(), [](Real one) { return one != 0; });
+  }
+
+  ZemaxSurface::Grid& grid() { return surface().grid ? *surface().grid : surface().grid.emplace(); }
+  // The numbers of a line of a grid, so many, and the rest 0.
+  std::optional<std::vector<Real>> grid_numbers(const Statement& statement, std::size_t count) {
+    const std::optional<std::vector<Real>> values = numbers_.list(statement, 1);
+    if (!values) return std::nullopt;
+    if (values->size() < count) report_.broken(numbers_.place(statement), fmt::format("{}: {} numbers where {} are needed", statement.name(), values->size(), count));
+    for (std::size_t i = count; i < values->size(); ++i)
+      if ((*values)[i] != 0) report_.left_out(numbers_.place(statement.words[i + 1]), fmt::format("{}: what its {}th number says is not known", statement.name(), i + 1));
+    return values->size() < count ? std::nullopt : values;
+  }
+  void take_grid(const Statement& statement) {
+    grid().place = numbers_.place(statement);
+    grid().layout = grid_numbers(statement, 4).value_or(std::vector<Real>{});
+  }
+  void take_grid_node(const Statement& statement) {
+    const std::optional<std::vector<Real>> values = grid_numbers(statement, 5);
+    if (!values) return;
+    if (grid().nodes.empty() && (*values)[0] == 1) grid().first_node = 1;
+    const auto next = static_cast<Real>(grid().nodes.size()) + Real(grid().first_node);
+    if ((*values)[0] != next) report_.broken(numbers_.place(statement.words[1]), fmt::format("GARR {} where {} comes next", prescription::excerpt(statement.words[1].text), number_text(static_cast<double>(next))));
+    grid().nodes.push_back({(*values)[1], (*values)[2], (*values)[3], (*values)[4]});
   }
 
   void finish();

@@ -23,6 +23,7 @@ class Reader {
   Reader(const ZemaxSurface& given, Real unit_mm, Report& report) : given_(given), unit_(unit_mm), report_(report), parm_(given.parm), xdat_(given.xdat) {}
 
   Real unit() const { return unit_; }
+  std::string grid_file() const { return grid_file_of(given_, unit_, report_); }
   double radius() const { return radius_of(given_.curvature.value / unit_); }
   double conic() const { return static_cast<double>(given_.conic.value); }
   // A length in mm.
@@ -150,6 +151,20 @@ Form zernike(Reader& from, const char* indexing, int most) {
 Form standard_zernike(Reader& from) { return zernike(from, "noll", 231); }
 Form fringe_zernike(Reader& from) { return zernike(from, "fringe", 37); }
 
+// Even powers (PARM 1 to 8) and Zernike terms, whose decenter PARM 9 and 10 are, may be beneath the heights.
+Form grid(Reader& from) {
+  from.leave_out(from.parm(0), "PARM 0 of GRID_SAG: linear interpolation between the nodes is not one here");
+  for (int i = 1; i <= 8; ++i) from.leave_out(from.parm(i), fmt::format("PARM {} of GRID_SAG: a power of r beneath a grid is not a shape here", i));
+  for (const int i : {9, 10}) from.parm(i);
+  for (const int i : {1, 2}) from.xdat(i);  // as of TOROIDAL
+  const std::string file = from.grid_file();
+  if (file.empty()) return conic(from);
+  Form form{"grid", {{"points", file}}};
+  const Form base = conic(from);
+  form.items.insert(form.items.end(), base.items.begin(), base.items.end());
+  return form;
+}
+
 // n = n0 + sum b_k r^k + sum a_i z^i; PARM 1 is the step of OpticStudio's integration, which is no property of the lens.
 Form gradient(Reader& from, int r_count, int z_count) {
   from.parm(1);
@@ -174,7 +189,7 @@ struct Type {
   Form (*gradient)(Reader&) = nullptr;
 };
 constexpr std::array types{Type{"STANDARD", conic}, Type{"EVENASPH", even_asphere}, Type{"ODDASPHE", odd_asphere}, Type{"TOROIDAL", toroid}, Type{"BICONICX", biconic},
-                           Type{"XPOLYNOM", xy_polynomial}, Type{"SZERNSAG", standard_zernike}, Type{"FZERNSAG", fringe_zernike}, Type{"GRINSUR1", conic, gradient_1},
+                           Type{"XPOLYNOM", xy_polynomial}, Type{"SZERNSAG", standard_zernike}, Type{"FZERNSAG", fringe_zernike}, Type{"GRID_SAG", grid}, Type{"GRINSUR1", conic, gradient_1},
                            Type{"GRINSUR3", conic, gradient_3}};
 
 void clip(const ZemaxSurface& given, Real unit, Report& report, Surface& surface) {
@@ -213,6 +228,7 @@ Surface surface_of(const ZemaxSurface& given, Real unit_mm, Report& report) {
     surface.shape = conic(reader);
   } else {
     surface.shape = type->shape(reader);
+    if (given.grid && type->shape != grid) report.left_out(given.grid->place.value_or(given.place), fmt::format("heights on a grid (GDAT, GARR) of a surface of type {}", given.type));
     if (type->gradient) {
       surface.medium = {Medium::Kind::gradient, {}, 1, 0, type->gradient(reader), given.type_place};
       const double index = std::get<double>(surface.medium.gradient.items.front().value);

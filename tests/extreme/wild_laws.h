@@ -5,6 +5,8 @@
 // With K, K' the rays before and behind, N the unit normal, n and n' the indices; b.position, b.direction and b.normal of the ray's bound.
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <optional>
 
 #include "lib/study/rounding_bound_internal.h"
@@ -32,10 +34,52 @@ struct Passage {
   double index_behind() const { return view.index_behind(number); }
 };
 
+// How far beyond what is allowed: above 1 it is. Infinite for NaN.
+inline double part(const Exact& error, double most) {
+  const double size = size_of(error);
+  return size == 0 ? 0 : size / most < std::numeric_limits<double>::infinity() ? size / most : std::numeric_limits<double>::infinity();
+}
+inline double part(const Vec3<Exact>& error, double most) { return part(norm(error), most); }
+
+// Of radial patches, which jump from facet to facet: the sheet that a hit lies on, that of the facet there or, in the gap between two, of the neighbour whose
+// sheet goes on beyond its edge (surface/radial.h).
+struct Sheet {
+  std::uint32_t facet = surface::no_facet;
+  double into_gap = 0;  // how far from both sheets' heights the line passes the wall over the edge between them; 0: between them, or no gap
+
+  template <class S>
+  static Sheet of(const S& patches, const Vec3<Exact>& p, const Vec3<Exact>& d, double near) {
+    const surface::Mesh& mesh = *patches.facets.mesh;
+    const std::uint32_t own = patches.facets.facet_at(p.x, p.y);
+    if (own == surface::no_facet) return {};
+    const auto off = [&](std::uint32_t facet, const Vec3<Exact>& at) { return Exact(at.z - patches.height_of(facet, at.x, at.y).z); };
+    Sheet best{own};
+    const auto slopes = patches.height_of(own, p.x, p.y);
+    Exact least = abs(off(own, p));
+    if (part(least, 2 * size_of(Vec3<Exact>{slopes.dz_dx, slopes.dz_dy, Exact(1)}) * near) <= 1) return best;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t other = mesh.facets[own].neighbour[i];
+      if (other == surface::no_facet || !(abs(off(other, p)) < least)) continue;
+      const auto corner = [&](std::size_t k) { return vec3_cast<Exact>(mesh.vertices[mesh.corners[own][k % 3]]); };
+      const Vec3<Exact> a = corner(i + 1), edge = corner(i + 2) - a;
+      const Exact to_wall = (edge.x * (a.y - p.y) - edge.y * (a.x - p.x)) / (edge.x * d.y - edge.y * d.x);
+      const Vec3<Exact> wall = p + to_wall * d;
+      const Exact one = off(own, wall), two = off(other, wall), nearer = abs(one) < abs(two) ? abs(one) : abs(two);
+      least = abs(off(other, p));
+      best = {other, (one < Exact(0)) != (two < Exact(0)) ? 0 : static_cast<double>(nearer)};
+    }
+    return best;
+  }
+};
+
 // z - S(x, y) = 0 by the user's numbers.
 class Equation {
  public:
-  explicit Equation(const Passage& at) : Equation(at.surface().shape, at.given) {}
+  explicit Equation(const Passage& at) : Equation(at.surface().shape, at.given) {
+    std::visit([&]<class S>(const S& shape) {
+      if constexpr (is_radial<S>) sheet_ = Sheet::of(shape, at.behind.position, at.exact.direction, at.bound.position);
+    }, compiled_);
+  }
   Equation(const surface::Shape& compiled, const prescription::Shape& given) : compiled_(compiled) {
     if (const auto* sphere = std::get_if<surface::Sphere>(&compiled_)) conic_ = TextbookConic<Exact>{Exact(sphere->curvature), Exact(1)};
     if (const auto* conic = std::get_if<surface::Conic>(&compiled_)) conic_ = TextbookConic<Exact>{Exact(conic->curvature), Exact(1) + Exact(conic->conic_constant)};
@@ -45,7 +89,11 @@ class Equation {
   Exact sag(const Exact& x, const Exact& y) const {
     if (conic_) return conic_->height(x, y).z;
     if (sag_) return sag_->height(x, y).z;
-    return std::visit([&](const auto& shape) { return shape.sag(x, y); }, compiled_);
+    return std::visit([&]<class S>(const S& shape) {
+      if constexpr (is_radial<S>)
+        if (sheet_.facet != surface::no_facet) return shape.height_of(sheet_.facet, x, y).z;
+      return shape.sag(x, y);
+    }, compiled_);
   }
   // Up to the length of the gradient how far off the surface a place is. A conic's is z - c/2 (x^2 + y^2 + (1+K) z^2), without a root.
   Exact residual(const Vec3<Exact>& p) const {
@@ -58,22 +106,27 @@ class Equation {
       const auto h = sag_->height(p.x, p.y);
       return {-h.dz_dx, -h.dz_dy, Exact(1)};
     }
-    const auto slope = std::visit([&](const auto& shape) { return shape.gradient(p.x, p.y); }, compiled_);
-    return {-slope.x, -slope.y, Exact(1)};
+    return std::visit([&]<class S>(const S& shape) -> Vec3<Exact> {
+      if constexpr (is_radial<S>)
+        if (sheet_.facet != surface::no_facet) {
+          const auto h = shape.height_of(sheet_.facet, p.x, p.y);
+          return {-h.dz_dx, -h.dz_dy, Exact(1)};
+        }
+      const auto slope = shape.gradient(p.x, p.y);
+      return {-slope.x, -slope.y, Exact(1)};
+    }, compiled_);
   }
+  const Sheet& sheet() const { return sheet_; }
 
  private:
+  template <class S>
+  static constexpr bool is_radial = requires(const S& shape) { shape.height_of(0u, 0.0, 0.0); };
+
   const surface::Shape& compiled_;
   std::optional<TextbookConic<Exact>> conic_;
   std::optional<TextbookSag<Exact>> sag_;
+  Sheet sheet_;
 };
-
-// How far beyond what is allowed: above 1 it is. Infinite for NaN.
-inline double part(const Exact& error, double most) {
-  const double size = size_of(error);
-  return size == 0 ? 0 : size / most < std::numeric_limits<double>::infinity() ? size / most : std::numeric_limits<double>::infinity();
-}
-inline double part(const Vec3<Exact>& error, double most) { return part(norm(error), most); }
 
 // The tracer's answer is the exact one within the bound.
 inline double own_error(const Passage& at) {
@@ -84,14 +137,15 @@ inline double own_error(const Passage& at) {
 // The hit lies on the surface and on the ray: within b.position of the exact hit, so the residual is below |gradient| b.position; twice for what the gradient
 // changes on the way (a tenth at most, or there is no bound). The compiled curvature and coefficients are those that the user wrote to u of
 // each term, which b.position holds twice.
-// Of a conic's two crossings it is the one that the textbook takes.
+// Of a conic's two crossings it is the one that the textbook takes; of two sheets with a gap between them the line passes the wall of the gap.
 inline double off_surface(const Passage& at) {
   const Equation equation(at);
   const Vec3<Exact>&p = at.behind.position, n = equation.gradient(p);
   const double size = size_of(n);
   if (const auto& conic = equation.conic())
     if (const double other = part(p - textbook_meet(*conic, at.exact.start, at.exact.direction).point, at.bound.position); other > 1) return other;
-  return std::max(part(equation.residual(p), 2 * size * at.bound.position), part(cross(p - at.exact.start, at.exact.direction), at.bound.position));
+  return std::max({part(equation.residual(p), 2 * size * at.bound.position), part(cross(p - at.exact.start, at.exact.direction), at.bound.position),
+                   part(Exact(equation.sheet().into_gap), 2 * size * at.bound.position)});
 }
 
 // n K x N = n' K' x N, which is Snell's law, and K' lies in the plane of K and N. N at the tracer's hit is turned against that of the exact

@@ -42,7 +42,8 @@ class Examination {
     const Folder folder;
     for (const auto& [name, text] : wild_.points) folder.file(name, text);
     const auto read = prescription::read_prescription(folder.file("system.yaml", wild_.yaml));
-    for (const auto& finding : read.findings.all()) complain("the reader says " + format(finding));
+    for (const auto& finding : read.findings.all())
+      if (finding.severity != prescription::Severity::note) complain("the reader says " + format(finding));  // a note: of nodes without data
     if (!read.model) return;
     model_ = *read.model;
     scene::CompileResult compiled = scene::compile(model_);
@@ -158,6 +159,7 @@ class Examination {
   }
 
   void laws(const Passage& at, const trace::RayBatch& start, std::size_t i, const std::string& where) {
+    count("at " + kind_of(at));
     hold("within its bound", own_error(at), where);
     hold("on the surface and the ray", off_surface(at), where);
     hold("Snell and coplanarity", snell(at), where);

@@ -141,8 +141,29 @@ class WildGenerator {
     constexpr const char* interpolations[]{"linear", "c1", "cubic", "thin_plate", "multiquadric"};
     return fmt::format("delaunay: {{points: {}, format: xyz, interpolation: {}}}", file, interpolations[static_cast<int>(u() * 5)]);
   }
+  // Waves, bumps and noise on a grid over the beam, with their slopes or without, on a base or on none; here and there a hole.
+  std::string grid(int number) {
+    const int count_x = 5 + static_cast<int>(u() * 5), count_y = 5 + static_cast<int>(u() * 5);
+    const double half = system_.beam_radius * u(1.2, 5), hx = 2 * half / (count_x - 1), hy = hx * log_uniform(-.5, .5), size = half * (is(.15) ? log_uniform(-2, 0) : log_uniform(-7, -2));
+    const double wave = half * log_uniform(-.7, .5), phase = u(0, 6.3), noise = is(.3) ? size * log_uniform(-4, 0) : 0;
+    const bool has_slopes = is(.6), has_holes = is(.3);
+    const double middle_x = is(.3) ? half * u(-.5, .5) : 0, middle_y = is(.3) ? half * u(-.5, .5) : 0;
+    std::string text = fmt::format("{} {} {} {} 0 {} {}\n", count_x, count_y, hx, hy, middle_x, middle_y);
+    for (int j = count_y - 1; j >= 0; --j)
+      for (int i = 0; i < count_x; ++i) {
+        const double x = (i - (count_x - 1) / 2.0) * hx / wave + phase, y = (j - (count_y - 1) / 2.0) * hy / wave;
+        const double z = size * std::sin(x) * std::cos(y) + noise * u(-1, 1);
+        const bool is_hole = has_holes && is(.1);
+        if (has_slopes) text += fmt::format("{} {} {} {} {}\n", z, size / wave * std::cos(x) * std::cos(y), -size / wave * std::sin(x) * std::sin(y), -size / wave / wave * std::cos(x) * std::sin(y), is_hole ? 1 : 0);
+        else text += is_hole ? "nan\n" : fmt::format("{}\n", z);
+      }
+    const std::string file = fmt::format("grid-{}.dat", number);
+    system_.points[file] = text;
+    const double R = radius(), K = conic_constant();
+    return fmt::format("grid: {{points: {}{}}}", file, is(.3) ? "" : fmt::format(", radius_mm: {}, conic_constant: {}", straight_or(R), K));
+  }
   std::string shape(int number) {
-    if (has_points_ && is(.4)) return points(number);
+    if (has_points_ && is(.4)) return is(.5) ? grid(number) : points(number);
     const double kind = u();
     if (kind < .1) return "plane: {}";
     if (kind < .3) return fmt::format("conic: {{radius_mm: {}}}", radius());

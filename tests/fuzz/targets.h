@@ -163,6 +163,7 @@ inline std::string fuzz_lens_file(const Folder& folder, std::string_view bytes) 
       const lens_file::Imported imported = lens_file::import({file, folder.path() + "/imported.yaml", {}, takes_parts});
       if (const std::string wrong = wrong_with(imported.findings, imported.prescription.has_value()); !wrong.empty()) return wrong;
       if (!imported.prescription) continue;
+      for (const lens_file::DataFile& one : imported.files) folder.write(std::filesystem::path(one.path).filename().string(), one.text);
       const auto read = prescription::read_prescription(folder.write("imported.yaml", *imported.prescription));
       if (!read.model) return "a prescription that cannot be read: " + format(read.findings.all().front());
       if (const std::string wrong = wrong_with(*read.model); !wrong.empty()) return wrong;

@@ -60,6 +60,7 @@ inline Outcome import_text(const std::string& name, const std::string& text, boo
     finding.place.file = std::filesystem::path(finding.place.file).filename();
     run.messages += format(finding) + "\n";
   }
+  for (const DataFile& file : imported.files) folder.write(std::filesystem::path(file.path).filename().string(), file.text);
   if (imported.prescription) {
     const auto read = prescription::read_prescription(folder.write("out.yaml", *imported.prescription));
     EXPECT_TRUE(read.model.has_value()) << *imported.prescription << prescription::test::text_of(read.findings);

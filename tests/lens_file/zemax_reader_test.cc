@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the operands of Zemax files become. Rays of whole lenses are in tests/commands/import_command_test.cc.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <array>
 #include <cmath>
 
 #include "tests/lens_file/support.h"
@@ -11,6 +13,7 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::Not;
+using ::testing::StartsWith;
 
 TEST(ZemaxFile, becomes_a_prescription_that_reads_as_if_written_by_hand) {
   const Outcome run = import_text("lens.zmx", zemax("ENPD 1.0E+1\nFTYP 0 0 2 3 0 0 0\nXFLN 0 0 0 0 0 0 0 0 0 0 0 0\nYFLN 0 7.5 0 0 0 0 0 0 0 0 0 0\nWAVM 1 4.861327E-1 1\nWAVM 2 5.875618E-1 1\nWAVM 3 6.562725E-1 1\nWAVM 4 5.5E-1 1\n",
@@ -176,6 +179,45 @@ TEST(ZemaxCoordinateBreaks, turn_right_handed) {
   EXPECT_EQ(model.surfaces[3].decenter_mm, (Vec3<double>{0, 32, 32}));
 }
 
+// z = x/64 + y/16 on 5 x 6 nodes, row by row from the top, on a sphere: as no other order of the rows would have it. What comes beside the prescription is found there.
+TEST(ZemaxFile, has_heights_on_a_grid) {
+  std::string lines = "TYPE GRID_SAG\nCURV 0.05\nCONI -0.5\nDISZ 5\nPARM 0 0\nPARM 9 0.3\nXDAT 1 8\nXDAT 2 1.5\nGDAT 5 6 -0.5 2.5E-1 0 0 0\n";
+  int number = 0;
+  for (const double y : {0.625, 0.375, 0.125, -0.125, -0.375, -0.625})
+    for (const double x : {-1.0, -0.5, 0.0, 0.5, 1.0}) lines += fmt::format("GARR {} {} {} {} {}\n", number++, x / 64 + y / 16, 0.015625, 0.0625, x == 1 ? 0.25 : 0.0);
+  const prescription::test::TemporaryFolder folder;
+  for (const char* output : {"out.yaml", "my \xC3\xB6ut.yaml"}) {
+    const Imported imported = import({folder.write("lens.zmx", zemax_with(lines)), folder.path() + "/" + output, {}, false});
+    ASSERT_TRUE(imported.prescription.has_value()) << prescription::test::text_of(imported.findings);
+    EXPECT_THAT(prescription::test::text_of(imported.findings), HasSubstr("lens.zmx:53:3: warning: GARR: its rows are taken to run as"));
+    ASSERT_EQ(imported.files.size(), 1u);
+    const std::string name = output[0] == 'o' ? "out-2.dat" : "data-2.dat";
+    EXPECT_EQ(imported.files[0].path, folder.path() + "/" + name);
+    EXPECT_THAT(*imported.prescription, HasSubstr("grid: {points: " + name + ", radius_mm: 20, conic_constant: -0.5}, thickness_mm: 5"));
+    EXPECT_THAT(imported.files[0].text, StartsWith("! By sagitta import, from line 53 of a Zemax lens file on.\n5 6 -0.5 0.25 0 0 0\n0.0234375 0.015625 0.0625 0\n"));
+    folder.write(name, imported.files[0].text);
+    const auto read = prescription::read_prescription(folder.write("out.yaml", *imported.prescription));
+    ASSERT_TRUE(read.model.has_value()) << prescription::test::text_of(read.findings);
+    const auto& grid = *read.model->surfaces[1].shape.grid;
+    ASSERT_EQ(grid.nodes.size(), 30u);
+    EXPECT_EQ((std::array{grid.first_x, grid.first_y, grid.spacing_x, grid.spacing_y}), (std::array{-1.0, -0.625, 0.5, 0.25}));
+    for (std::size_t i = 0; i < 30; ++i) {
+      const double x = -1 + 0.5 * static_cast<double>(i % 5), y = -0.625 + 0.25 * static_cast<double>(i / 5);
+      EXPECT_EQ(grid.nodes[i].z, x / 64 + y / 16) << i;
+      EXPECT_EQ(grid.nodes[i].dz_dx, 0.015625);
+      EXPECT_EQ(grid.nodes[i].dz_dy, 0.0625);
+      EXPECT_EQ(grid.nodes[i].d2z_dxdy, x == 1 ? 0.25 : 0);
+    }
+  }
+  // Counted from 1 they are the same.
+  std::string from_1 = lines;
+  number = 0;
+  for (std::size_t at = 0; (at = from_1.find("GARR ", at)) != std::string::npos; at += 5) from_1.replace(at + 5, std::to_string(number).size(), std::to_string(number + 1)), ++number;
+  const auto files_of = [&](const std::string& text) { return import({folder.write("lens.zmx", zemax_with(text)), folder.path() + "/out.yaml", {}, false}).files; };
+  ASSERT_EQ(files_of(from_1).size(), 1u);
+  EXPECT_EQ(files_of(from_1)[0].text, files_of(lines)[0].text);
+}
+
 TEST(ZemaxFile, may_go_on_with_what_has_no_optics) {
   const std::string text = zemax_with("TYPE STANDARD\nCURV 0.1\nDISZ 5");
   const Outcome run = import_text("lens.zmx", text + "EFLY 1 43 0 0\nREAY 43 1 0 1\nTOL TOFF\nCRVT 1 0.2\n");
@@ -186,11 +228,11 @@ TEST(ZemaxFile, may_go_on_with_what_has_no_optics) {
 }
 
 TEST(ZemaxFile, partly_understood_lists_what_is_left_out) {
-  const std::string text = zemax_with("TYPE GRID_SAG\nCURV 0.05\nDISZ 5\nGDAT whatever", "TYPE STANDARD\nCURV 0\nDISZ 5\nSQAP 5 5 0");
+  const std::string text = zemax_with("TYPE GRID_PHA\nCURV 0.05\nDISZ 5\nGPHA whatever", "TYPE STANDARD\nCURV 0\nDISZ 5\nSQAP 5 5 0");
   const Outcome refused = import_text("lens.zmx", text), partial = import_text("lens.zmx", text, true);
   EXPECT_EQ(refused.prescription, "");
   EXPECT_EQ(partial.left_out_count, 3);
-  const std::string list = "# Left out of that file, by line:\n#   45: a surface of type GRID_SAG is not known; its conic (CURV, CONI) stands for it\n#   48: GDAT is not known\n#   57: SQAP is not known\n";
+  const std::string list = "# Left out of that file, by line:\n#   45: a surface of type GRID_PHA is not known; its conic (CURV, CONI) stands for it\n#   48: GPHA is not known\n#   57: SQAP is not known\n";
   EXPECT_THAT(partial.prescription, HasSubstr(list));
   EXPECT_THAT(partial.prescription, HasSubstr("{conic: {radius_mm: 20}, thickness_mm: 5}"));
   std::string as_warnings = refused.messages;

@@ -5,12 +5,14 @@
 
 #include <cmath>
 #include <map>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "tests/support/point_sets.h"
 #include "tests/support/prescriptions.h"
+#include "tests/support/sag_grids.h"
 
 namespace sagitta::test {
 
@@ -37,6 +39,15 @@ inline prescription::Shape random_shape(Uniform& u, const RandomKinds& kinds) {
     for (int j = 3; j <= 20; ++j)
       if (u() < 0.5) coefficients.push_back({j, u(-3, 3)});
     return zernike_shape(radius, conic_constant, u(6, 12), std::move(coefficients));
+  }
+  if (kind < 0.78) {
+    prescription::Shape shape = shape_of("grid", {{"radius_mm", radius}, {"conic_constant", conic_constant}});
+    const double size = u(-0.05, 0.05), turn = u(0, 6.3);
+    tests::SagGrid grid = tests::sag_grid({41, 35, 0.8, 0.9, u(-1, 1), u(-1, 1)}, [&](double x, double y) {  // of an extent of 16 mm, waves 6 mm long
+      return tests::SagGrid::Node{size * std::sin(x + turn) * std::cos(y), size * std::cos(x + turn) * std::cos(y), -size * std::sin(x + turn) * std::sin(y), -size * std::cos(x + turn) * std::sin(y)};
+    });
+    shape.grid = std::make_shared<tests::SagGrid>(u() < 0.5 ? std::move(grid) : tests::without_slopes(std::move(grid)));
+    return shape;
   }
   const double other_radius = u() < 0.15 ? INFINITY : radius * u(0.7, 1.4), other_constant = u(-3, 1.2);
   if (kind < 0.82) return shape_of("biconic", {{"radius_x_mm", other_radius}, {"radius_y_mm", radius}, {"conic_constant_x", other_constant}, {"conic_constant_y", conic_constant}});
@@ -72,6 +83,20 @@ inline prescription::Model random_model(Uniform& u, const RandomKinds& kinds = {
     model.surfaces.push_back(std::move(surface));
   }
   return model;
+}
+
+// All its lengths times `scale`.
+inline void scale_shape(prescription::Shape& shape, double scale) {
+  for (auto& [name, value] : shape.parameters.numbers)
+    if (!name.starts_with("conic_constant")) value *= scale;
+  const bool is_of_powers = shape.kind == "asphere" || shape.kind == "toroid";  // in mm^(1 - power)
+  for (auto& [name, list] : shape.parameters.indexed)
+    for (auto& [index, value] : list) value *= is_of_powers ? std::pow(scale, 1 - index) : scale;
+  if (!shape.grid) return;
+  prescription::SagGrid grid = *shape.grid;
+  for (double* length : {&grid.first_x, &grid.first_y, &grid.spacing_x, &grid.spacing_y}) *length *= scale;
+  for (auto& node : grid.nodes) node.z *= scale, node.d2z_dxdy /= scale;
+  shape.grid = std::make_shared<prescription::SagGrid>(std::move(grid));
 }
 
 inline std::vector<GlobalRay> random_rays(Uniform& u, int count) {

@@ -3,6 +3,7 @@
 // surface and the surface's slope; the tracer's own formulas play no part.
 #include <cmath>
 #include <limits>
+#include <variant>
 
 #include "tests/support/random_system.h"
 
@@ -124,10 +125,19 @@ TEST(Laws, optical_path_is_index_times_distance) {
 // Fermat: the path from the hit before to the hit behind is stationary where the ray meets the surface. The hit is moved
 // by h along the surface, in x and in y; the central difference has an error in h^2, which the extrapolation from h and
 // h/2 takes away to h^4. With h = 1e-3 rounding leaves some 1e-16 * 50/1e-3 = 5e-12, and h^4 times the fifth derivative
-// stays below 1e-9 where the neighbours are 0.5 mm away or more and the passage is tame.
+// stays below 1e-9 where the neighbours are 0.5 mm away or more and the passage is tame. Left out: hits within h of an edge of a grid's
+// cell, where second derivatives jump: the difference would be off by h/4 times the jump.
+bool is_smooth_within(const surface::Shape& shape, const Vec3<double>& hit, double h) {
+  const auto* grid = std::get_if<surface::BicubicGrid>(&shape);
+  if (!grid) return true;
+  const auto cell_of = [](double at, double first, double spacing) { return std::floor((at - first) / spacing); };
+  return cell_of(hit.x - h, grid->first_x, grid->spacing_x) == cell_of(hit.x + h, grid->first_x, grid->spacing_x) &&
+         cell_of(hit.y - h, grid->first_y, grid->spacing_y) == cell_of(hit.y + h, grid->first_y, grid->spacing_y);
+}
+
 TEST(Laws, fermat_optical_path_is_stationary) {
   Uniform u(3);
-  int count = 0;
+  int count = 0, on_grids = 0, on_edges = 0;
   for (int i = 0; i < 20000; ++i) {
     const CompiledScene compiled = checked(scene::compile(random_model(u)));
     const scene::Scene& scene = compiled.scene;
@@ -141,6 +151,10 @@ TEST(Laws, fermat_optical_path_is_stationary) {
         const Vec3<double> to = frame.inverse() * (scene.surfaces[k + 1].global_from_local * all[k + 1].hit);
         start = frame * at.hit;
         if (!tame(at) || std::abs(at.path) < 0.5 || std::abs(all[k + 1].path) < 0.5) continue;
+        if (!is_smooth_within(scene.surfaces[k].shape, at.hit, 1e-3)) {
+          ++on_edges;
+          continue;
+        }
         const auto path = [&](double dx, double dy) {
           const double x = at.hit.x + dx, y = at.hit.y + dy;
           const Vec3<double> q{x, y, std::visit([&](const auto& one) { return one.sag(x, y); }, scene.surfaces[k].shape)};
@@ -152,11 +166,14 @@ TEST(Laws, fermat_optical_path_is_stationary) {
         };
         EXPECT_LE(std::abs(slope(1, 0)), 1e-9);
         EXPECT_LE(std::abs(slope(0, 1)), 1e-9);
+        on_grids += std::holds_alternative<surface::BicubicGrid>(scene.surfaces[k].shape);
         ++count;
       }
     }
   }
   EXPECT_GE(count, 3000);
+  EXPECT_GE(on_grids, 100);
+  EXPECT_LE(on_edges, on_grids / 50);  // 4 h over the spacing of 0.8 mm
 }
 
 // The same surfaces in the opposite order, behind them the plane of the start.
@@ -304,11 +321,7 @@ TEST(Laws, a_scaled_system_gives_scaled_results) {
         surface.decenter_mm = scale * surface.decenter_mm;
         surface.semi_diameter_mm *= scale;
         surface.inner_semi_diameter_mm *= scale;
-        for (auto& [name, value] : surface.shape.parameters.numbers)
-          if (!name.starts_with("conic_constant")) value *= scale;
-        const bool is_of_powers = surface.shape.kind == "asphere" || surface.shape.kind == "toroid";  // in mm^(1 - power)
-        for (auto& [name, list] : surface.shape.parameters.indexed)
-          for (auto& [index, value] : list) value *= is_of_powers ? std::pow(scale, 1 - index) : scale;
+        scale_shape(surface.shape, scale);
       }
       const CompiledScene other = checked(scene::compile(scaled));
       std::vector<GlobalRay> scaled_rays = rays;
