@@ -16,9 +16,11 @@ class WildGradients {
  public:
   explicit WildGradients(std::uint64_t seed) : u(0x6a09e667f3bcc909u * (seed + 1)) {
     u(), u();
-    has_some_ = u() < .1;
+    has_some_ = u() < .03;
   }
 
+  // Whether there may be any in this system.
+  bool has_some() const { return has_some_; }
   // Whether the next gap has one.
   bool next() { return has_some_ && u() < .4; }
   // In a system of this scale (mm), behind a medium of this index, for light that travels so.

@@ -155,7 +155,7 @@ class Examination {
       }
       if (here.ended != 0) {
         const Equation equation(scene_.surface(number).shape, model_.surfaces[static_cast<std::size_t>(number - 1)].shape);
-        if (scene_.primary.has_gradient_at(number)) count("ended at a gradient");
+        if (scene_.primary.has_gradient_at(number)) count(fmt::format("ended at a gradient, {}", surface::status_names[static_cast<std::size_t>(here.ended % 8)]));
         const bool is_missed = here.ended % 8 == static_cast<int>(Status::missed);
         if (equation.conic() && !scene_.primary.has_gradient_at(number)) {
           count("conics that end a ray");
@@ -295,6 +295,18 @@ class Examination {
 inline Found search_systems(std::uint64_t first, std::uint64_t count) {
   std::vector<Found> of(count);
   numerics::share_blocks(count, 0, [&] { return [&](std::size_t i) { of[i] = Examination(first + i, i % 8 == 0).take(); }; });
+  Found all;
+  for (const Found& one : of) all.add(one);
+  return all;
+}
+
+// Those with gradient-index media among them.
+inline Found search_gradients(std::uint64_t first, std::uint64_t count) {
+  std::vector<std::uint64_t> seeds;
+  for (std::uint64_t seed = first; seed < first + count; ++seed)
+    if (WildGradients(seed).has_some()) seeds.push_back(seed);
+  std::vector<Found> of(seeds.size());
+  numerics::share_blocks(seeds.size(), 0, [&] { return [&](std::size_t i) { of[i] = Examination(seeds[i], true).take(); }; });
   Found all;
   for (const Found& one : of) all.add(one);
   return all;
