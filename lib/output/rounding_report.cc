@@ -88,7 +88,9 @@ std::string what_bounds_say(const study::Rounding& rounding) {
     text = part == 0   ? fmt::format("no surface{} loses anything\n", unknown > 0 ? " of which a bound is known" : "")
            : part <= 1 ? fmt::format("every loss is explained by the geometry: at most {:.2g} of what it can do to a ray, at surface {}\n", part, number)
                        : fmt::format("surface {} loses {:.2g} times what the geometry can explain: please report this system\n", number, part);
-  if (unknown > 0) text += fmt::format("of {} hit{} no bound is known: rounding moves them by as much as the surface turns within, or a gradient-index medium is before or behind the surface\n", unknown, unknown == 1 ? "" : "s");
+  if (std::any_of(rounding.surfaces.begin(), rounding.surfaces.end(), [](const SurfaceRounding& one) { return one.is_estimate; }))
+    text += "where a gradient-index medium begins or ends the bound is an estimate: what the tolerance leaves of a step, and its rounding, enlarged as rays part from there\n";
+  if (unknown > 0) text += fmt::format("of {} hit{} no bound is known: rounding moves them by as much as the surface turns within\n", unknown, unknown == 1 ? "" : "s");
   return text;
 }
 

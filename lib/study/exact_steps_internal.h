@@ -22,6 +22,8 @@ struct ExactStep {
   Vec3<Exact> start, direction;
   surface::Crossing<Exact> crossing;
   ExactRay behind;
+  Vec3<Exact> arriving;              // the direction at the hit: in a gradient another one
+  Exact index_before, index_behind;  // at the hit
 };
 
 struct View {
@@ -37,11 +39,12 @@ struct View {
   ExactStep look(int number, const ExactRay& ray) const {
     if (wavelength.has_gradient_at(number)) {
       const ThroughGradient<Exact> step = through_gradient(scene.surface(number), number, wavelength, ray);
-      return {step.entering.position, step.entering.direction, step.crossing, step.behind};
+      return {step.entering.position, step.entering.direction, step.step.crossing, step.behind, step.step.arriving, step.step.index_before, step.step.index_behind};
     }
     ExactStep result;
+    result.index_before = index_before(number), result.index_behind = index_behind(number);
     result.behind = through(scene.surface(number), number, index_before(number), index_behind(number), ray, [&](const Vec3<Exact>& p, const Vec3<Exact>& d) {
-      result.start = p, result.direction = d;
+      result.start = p, result.direction = result.arriving = d;
       return result.crossing = std::visit([&](const auto& shape) -> surface::Crossing<Exact> { return shape.meet(p, d); }, scene.surface(number).shape);
     });
     return result;
@@ -51,7 +54,7 @@ struct View {
   ExactStep look_past(int from, int number, ExactRay ray) const {
     for (int next = from + 1; next < number; ++next) ray = step(next, ray);
     if (ray.ended == 0) return look(number, ray);
-    return {ray.position, ray.direction, surface::no_crossing<Exact>(Status::missed), ray};
+    return {ray.position, ray.direction, surface::no_crossing<Exact>(Status::missed), ray, ray.direction, {}, {}};
   }
   ExactRay to_image(int behind, ExactRay ray) const {
     for (int number = behind + 1; number <= surface_count(); ++number) ray = step(number, ray);

@@ -262,8 +262,9 @@ class Gatherer {
       surface.position_mm.add(one.errors[k].position), surface.direction_rad.add(one.errors[k].direction), surface.opl_mm.add(one.errors[k].opl);
       surface.own_position_mm.add(one.own[k].position), surface.own_direction_rad.add(one.own[k].direction), surface.own_opl_mm.add(one.own[k].opl);
       if (k == 0) continue;
-      compare_with_bound(one.own[k], one.bounds[k - 1], surface);
       const int number = static_cast<int>(k);
+      surface.is_estimate = surface.is_estimate || view.wavelength.has_gradient_at(number);
+      compare_with_bound(one.own[k], one.bounds[k - 1], surface);
       const double lost = loss(one.own[k].position, one.own[k].direction, one.own[k].opl);
       if (lost > worst_[k].loss) {
         ExactRay before = as_exact(bundle.states[from], i);

@@ -20,12 +20,12 @@
 //   strong curvature |c| scale;  ill-conditioned facet 1/sin(its smallest angle);
 //   radial functions that cancel, sum of their sizes/scale;  edge of a facet, within rounding, where the slope jumps;  index ratio near 1, where nothing else is to blame.
 //
-// A ray in a gradient-index medium is exact to 1e-25 mm here; what the tracer's tolerance leaves of it is an error of its own, at the surface that ends the medium. No bound is
-// known of that.
+// A ray in a gradient-index medium is exact to 1e-25 mm here; what the tracer's tolerance leaves of it is an error of its own, at the surface that ends the medium.
 //
 // Bounds: what rounding can do at most to one ray at one surface, from the counts of roundings and the geometry at that ray's own crossing
 // (rounding_bound_internal.h: distances, cosines before and behind, curvatures, the sizes of the terms of the surface's equation). An own
-// error beyond its bound is not the geometry's doing: it is a fault of the tracer, or of the bound.
+// error beyond its bound is not the geometry's doing: it is a fault of the tracer, or of the bound. Where a gradient-index medium ends, it is an estimate: the tolerance of each step and
+// its rounding, times what the ray's variations grow by from there (gradient_bound_internal.h).
 //
 // Source: the model of computation is Higham, Accuracy and Stability of Numerical Algorithms (2nd ed., 2002), chapter 1.
 #pragma once
@@ -65,6 +65,7 @@ struct SurfaceRounding {
   Spoiled share_mm, share_waves;                           // (2), of the place in the image, of the OPD
   Spoiled bound_position_mm, bound_direction_rad, bound_opl_mm;  // of the own errors, ray by ray
   double of_bound = 0;                                     // worst own error in units of its own ray's bound
+  bool is_estimate = false;                                // these bounds: a gradient-index medium begins or ends there
   std::int64_t without_bound = 0;                          // rays of which the analysis says nothing: the hit as a whole is uncertain
   double digits_lost = 0;
   std::string cause;                                       // "" where less than one digit is lost

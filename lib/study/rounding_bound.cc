@@ -4,7 +4,7 @@
 #include <concepts>
 #include <limits>
 
-#include "lib/study/rounding_bound_internal.h"
+#include "lib/study/gradient_bound_internal.h"
 
 namespace sagitta::study {
 namespace {
@@ -193,17 +193,27 @@ Met met(const surface::RadialPatches<function>& radial, const Place& at, const V
 }  // namespace
 
 RoundingBound rounding_bound(const View& view, int from, int number, const ExactRay& before, const ExactStep& step, const Uncertainty& given) {
-  constexpr RoundingBound unknown{infinite, infinite, infinite, infinite};
+  constexpr RoundingBound unknown{infinite, infinite, infinite, infinite, infinite};
   if (step.crossing.status != Status::ok) return unknown;
   double turning_frames = 0, carried = size_of(before.position);
   for (int passed = from + 1; passed <= number; ++passed) {
     turning_frames += view.scene.surface(passed).centred ? 0 : 1;
     carried += norm(view.scene.surface(passed).local_from_previous.translation);
   }
-  const double entered = (16 * turning_frames + (number - from)) * u * carried, path = size_of(step.crossing.path);
-  Place at{vec3_cast<double>(step.start), vec3_cast<double>(step.direction), vec3_cast<double>(step.crossing.point), vec3_cast<double>(step.crossing.normal),
-           static_cast<double>(step.crossing.path), size_of(step.crossing.along), size_of(step.crossing.normal), 0, 16 * u * turning_frames + given.turn};
-  at.line = entered + 2 * u * norm(at.start) + 16 * u * turning_frames * path + given.line;  // (1)
+  const double entered = (16 * turning_frames + (number - from)) * u * carried;
+  const Vec3<double> start = vec3_cast<double>(step.start), hit = vec3_cast<double>(step.crossing.point);
+  AtGradient known{vec3_cast<double>(step.direction), entered + given.line, 16 * u * turning_frames + given.turn, 0, 0, view.index_before(number), view.index_behind(number), 0, 0, 0};
+  const bool is_in_gradient = view.wavelength.gradient(number - 1) != nullptr, is_at_gradient = view.wavelength.has_gradient_at(number);
+  if (is_at_gradient) {
+    const std::optional<AtGradient> there = at_gradient(view, number, step, {known.line + 2 * u * norm(start), known.turn});
+    if (!there) return unknown;
+    known = *there;
+  }
+  // In a gradient the surface is met from beside the hit.
+  const double path = is_in_gradient ? 0 : size_of(step.crossing.path);
+  Place at{is_in_gradient ? hit : start, known.arriving, hit, vec3_cast<double>(step.crossing.normal), is_in_gradient ? 0 : static_cast<double>(step.crossing.path),
+           size_of(step.crossing.along), size_of(step.crossing.normal), 0, known.turn};
+  at.line = known.line + 2 * u * norm(at.start) + 16 * u * turning_frames * path;  // (1)
 
   const scene::Surface& surface = view.scene.surface(number);
   const Met met_at = std::visit([&]<class S>(const S& shape) {
@@ -213,11 +223,12 @@ RoundingBound rounding_bound(const View& view, int from, int number, const Exact
   const double turned = met_at.normal / at.normal_length;
   if (!(turned < 0.1)) return unknown;
 
-  const double index_before = view.index_before(number), index_behind = view.index_behind(number), in_path = met_at.hit + entered + given.line + (6 * u + length_error) * path;
-  const double opl = index_before * in_path + u * (size_of(step.behind.opl) + 2 * index_before * path);  // (7)
+  const double index_before = known.index_before, index_behind = known.index_behind, in_path = met_at.hit + entered + given.line + (6 * u + length_error) * path;
+  const double opl = known.opl + index_before * in_path + u * (size_of(step.behind.opl) + 2 * std::abs(known.path) + 2 * index_before * path);  // (7)
   const double n = at.normal_length;
-  const auto with = [&](double direction) { return RoundingBound{met_at.hit, direction, opl, 2 * turned}; };
-  switch (trace::deflection_at(surface, index_before, index_behind)) {
+  const auto with = [&](double direction) { return RoundingBound{met_at.hit, direction, opl, 2 * turned, at.turn}; };
+  const trace::Deflection deflection = is_at_gradient && !surface.image && !surface.mirror ? trace::Deflection::refract : trace::deflection_at(surface, index_before, index_behind);
+  switch (deflection) {
     case trace::Deflection::none: return with(at.turn + 2 * u);
     case trace::Deflection::reflect: return with(at.turn + 2 * met_at.along / n + 6 * at.s * met_at.normal / (n * n) + 20 * u * at.s / n + 8 * u);
     case trace::Deflection::refract: break;
@@ -225,11 +236,14 @@ RoundingBound rounding_bound(const View& view, int from, int number, const Exact
   const double mu = index_before / index_behind, q = std::abs((index_behind - index_before) * (index_behind + index_before) / (index_behind * index_behind));
   const double w = size_of(dot(step.behind.direction, step.crossing.normal)), v = mu * at.s;
   if (step.behind.ended != 0 || !(w > 0)) return unknown;
-  const double w_squared = 2 * q * n * met_at.normal + mu * mu * met_at.along_squared + 10 * u * (q * n * n + v * v), dw = w_squared / w;  // (5)
-  const bool has_unit_normals = std::visit([]<class S>(const S&) { return surface::has_unit_normals<S>; }, surface.shape);
-  const double gamma = q / (w + v);
-  const double dgamma = has_unit_normals ? dw + mu * met_at.along + 3 * u * (w + v) : gamma * ((dw + mu * met_at.along) / (w + v) + 12 * u);
-  return with(mu * (at.turn + length_error) + gamma * met_at.normal + n * dgamma + 4 * u * (mu + gamma * n) + 8 * u);  // (6)
+  // Of mu, relative: the indices at the hit; 16 u, within which those at both sides of it are the same (gradient_step.h).
+  const double of_mu = is_at_gradient ? known.index_rounding + (known.slope_before / index_before + known.slope_behind / index_behind) * met_at.hit + 16 * u : 0;
+  const double dq = 2 * mu * mu * of_mu, q_most = q + dq;
+  const double w_squared = 2 * q_most * n * met_at.normal + mu * mu * met_at.along_squared + 10 * u * (q * n * n + v * v) + dq * n * n, dw = w_squared / w;  // (5)
+  const bool has_unit_normals = !is_at_gradient && std::visit([]<class S>(const S&) { return surface::has_unit_normals<S>; }, surface.shape);
+  const double gamma = q_most / (w + v), dv = mu * met_at.along + v * of_mu;
+  const double dgamma = has_unit_normals ? dw + dv + 3 * u * (w + v) : gamma * ((dw + dv) / (w + v) + 12 * u) + dq / (w + v);
+  return with(mu * (at.turn + length_error + of_mu) + gamma * met_at.normal + n * dgamma + 4 * u * (mu + gamma * n) + 8 * u);  // (6)
 }
 
 }  // namespace sagitta::study

@@ -24,6 +24,9 @@
 //   points    8 u of the coordinates, 64 u of the largest coefficient of a patch, (nodes + 16) u of the terms of a radial interpolant; what a step over an edge
 //             within `hit` changes
 //
+// Behind a gradient-index medium the line and the direction are off by what gradient_bound_internal.h estimates; at either side of one mu is off by what the indices change by within
+// the hit and by their rounding, which adds to (5) and (6).
+//
 // Infinite: the analysis says nothing, because the hit may be off by a tenth of what the normal turns within, or by more.
 //
 // Source: Higham, Accuracy and Stability of Numerical Algorithms (2nd ed., 2002), lemmas 3.1 to 3.3; section 3.3 for bounds that go along with
@@ -37,6 +40,7 @@ namespace sagitta::study {
 struct RoundingBound {
   double position, direction, opl;  // of the ray behind
   double normal;                    // by which the unit normal is turned
+  double turn = 0;                  // of the direction before
 };
 
 // What a ray is uncertain by as it comes: its line, where it is nearest the hit, and its direction.

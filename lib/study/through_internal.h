@@ -55,7 +55,7 @@ Path<T> through(const scene::Surface& surface, int number, double index_before, 
 template <class T>
 struct ThroughGradient {
   trace::Ray<T> entering;
-  surface::Crossing<T> crossing;
+  trace::GradientStep<T> step;
   Path<T> behind;
 };
 template <class T>
@@ -64,7 +64,7 @@ ThroughGradient<T> through_gradient(const scene::Surface& surface, int number, c
   const numerics::RigidTransform<T> local_from_previous = trace::transform_cast<T>(surface.local_from_previous);
   const trace::Ray<T> entering{local_from_previous * ray.position, local_from_previous.rotation * ray.direction, ray.opl, T(0)};
   const trace::GradientStep<T> step = trace::step_in_gradient(surface, number, wavelength, finest, entering);
-  return {entering, step.crossing, {step.behind.position, step.behind.direction, static_cast<std::int32_t>(static_cast<double>(step.behind.ended)), step.behind.opl}};
+  return {entering, step, {step.behind.position, step.behind.direction, static_cast<std::int32_t>(static_cast<double>(step.behind.ended)), step.behind.opl}};
 }
 
 }  // namespace sagitta::study

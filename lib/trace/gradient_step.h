@@ -52,15 +52,24 @@ struct AnyShape {
   }
 };
 
+// The frame of the medium before a surface, from the surface's.
+inline numerics::RigidTransform<double> medium_from_surface(const scene::Surface& surface, const scene::GradientGap& gap) {
+  return gap.medium_from_surface * surface.local_from_previous.inverse();
+}
+template <class T, class Form>
+PlacedForm<T, Form> placed(const Form& form, const numerics::RigidTransform<double>& medium_from_here) {
+  return {form, transform_cast<T>(medium_from_here), medium_from_here.rotation == numerics::Rotation<double>{}};
+}
+
 // `ray`, which travels, is in the surface's frame, on the surface before.
 template <class T>
 gradient_index::Arrival<T> travel(const scene::Surface& surface, const scene::GradientGap& gap, const gradient_index::Tolerance& tolerance, const Vec3<T>& place,
                                   const Vec3<T>& direction) {
-  const numerics::RigidTransform<double> medium_from_here = gap.medium_from_surface * surface.local_from_previous.inverse();
+  const numerics::RigidTransform<double> medium_from_here = medium_from_surface(surface, gap);
   const AnyShape<T> shape{surface.shape};
   return std::visit(
       [&]<class Form>(const Form& form) {
-        const PlacedForm<T, Form> medium{form, transform_cast<T>(medium_from_here), medium_from_here.rotation == numerics::Rotation<double>{}};
+        const PlacedForm<T, Form> medium = placed<T>(form, medium_from_here);
         return gradient_index::Traveller<T, PlacedForm<T, Form>, AnyShape<T>>(medium, shape, tolerance).go(place, direction);
       },
       gap.form);
@@ -79,6 +88,7 @@ struct GradientStep {
   surface::Crossing<T> crossing;
   T index_before, index_behind;  // at the hit
   int steps;                     // of the integration
+  Vec3<T> arriving;              // the direction at the hit, before the surface
 };
 
 // `entering` travels and is in the surface's frame already.
@@ -89,12 +99,12 @@ GradientStep<T> step_in_gradient(const scene::Surface& surface, int number, cons
   const scene::GradientGap *before = wavelength.gradient(number - 1), *behind = wavelength.gradient(number);
   const auto index_of_gap = [&](int gap) { return T(wavelength.index[static_cast<std::size_t>(gap)]); };
   Ray<T> ray = entering;
-  GradientStep<T> result{ray, {}, index_of_gap(number - 1), index_of_gap(number), 0};
+  GradientStep<T> result{ray, {}, index_of_gap(number - 1), index_of_gap(number), 0, ray.direction};
   if (before) {
     const gradient_index::Arrival<T> arrival = travel(surface, *before, tolerance, ray.position, ray.direction);
     result.crossing = arrival.crossing, result.steps = arrival.steps;
     if (arrival.crossing.status == Status::ok) {
-      ray.direction = arrival.direction, ray.opl = ray.opl + arrival.state.opl;
+      ray.direction = result.arriving = arrival.direction, ray.opl = ray.opl + arrival.state.opl;
       result.index_before = index_in(*before, Vec3<T>(transform_cast<T>(surface.local_from_previous.inverse()) * arrival.crossing.point));
     }
   } else {

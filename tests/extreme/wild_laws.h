@@ -30,8 +30,9 @@ struct Passage {
   double scale;      // of the system, mm
 
   const scene::Surface& surface() const { return view.scene.surface(number); }
-  double index_before() const { return view.index_before(number); }
-  double index_behind() const { return view.index_behind(number); }
+  bool is_in_gradient() const { return view.wavelength.gradient(number - 1) != nullptr; }
+  double index_before() const { return static_cast<double>(exact.index_before); }
+  double index_behind() const { return static_cast<double>(exact.index_behind); }
 };
 
 // How far beyond what is allowed: above 1 it is. Infinite for NaN.
@@ -142,18 +143,18 @@ inline double off_surface(const Passage& at) {
   const Equation equation(at);
   const Vec3<Exact>&p = at.behind.position, n = equation.gradient(p);
   const double size = size_of(n);
-  if (const auto& conic = equation.conic())
+  if (const auto& conic = equation.conic(); conic && !at.is_in_gradient())
     if (const double other = part(p - textbook_meet(*conic, at.exact.start, at.exact.direction).point, at.bound.position); other > 1) return other;
-  return std::max({part(equation.residual(p), 2 * size * at.bound.position), part(cross(p - at.exact.start, at.exact.direction), at.bound.position),
-                   part(Exact(equation.sheet().into_gap), 2 * size * at.bound.position)});
+  const double off_line = at.is_in_gradient() ? 0 : part(cross(p - at.exact.start, at.exact.direction), at.bound.position);
+  return std::max({part(equation.residual(p), 2 * size * at.bound.position), off_line, part(Exact(equation.sheet().into_gap), 2 * size * at.bound.position)});
 }
 
 // n K x N = n' K' x N, which is Snell's law, and K' lies in the plane of K and N. N at the tracer's hit is turned against that of the exact
 // one by b.normal, and once more by its own change there.
 inline double snell(const Passage& at) {
   const Vec3<Exact> N = normalized(Equation(at).gradient(at.behind.position));
-  const Vec3<Exact>&K = at.exact.direction, K_behind = at.behind.direction;
-  const Exact n(at.index_before()), n_behind(at.index_behind());
+  const Vec3<Exact>&K = at.exact.arriving, K_behind = at.behind.direction;
+  const Exact &n = at.exact.index_before, &n_behind = at.exact.index_behind;
   if (at.surface().image) return part(K_behind - K, at.bound.direction);
   const double most = (at.index_before() + at.index_behind()) * at.bound.normal + at.index_behind() * at.bound.direction;
   const double refracted = part(cross(n * K - n_behind * K_behind, N), most);
@@ -172,7 +173,7 @@ inline std::optional<double> fermat(const Passage& at) {
   const Equation equation(at);
   const Vec3<Exact>&p = at.behind.position, gradient = equation.gradient(p);
   const Exact length = norm(p) + Exact(at.scale), h = length * Exact(1e-18) / norm(gradient);
-  const Vec3<Exact> A = p - length * at.exact.direction, B = p + length * at.behind.direction;
+  const Vec3<Exact> A = p - length * at.exact.arriving, B = p + length * at.behind.direction;
   const Exact z = equation.sag(p.x, p.y);
   double worst = 0;
   for (const bool is_x : {true, false}) {
@@ -180,7 +181,7 @@ inline std::optional<double> fermat(const Passage& at) {
       const Exact x = is_x ? p.x + step : p.x, y = is_x ? p.y : p.y + step;
       return Vec3<Exact>{x, y, p.z + (equation.sag(x, y) - z)};
     };
-    const auto opl = [&](const Vec3<Exact>& q) { return Exact(at.index_before()) * norm(q - A) + Exact(at.index_behind()) * norm(B - q); };
+    const auto opl = [&](const Vec3<Exact>& q) { return at.exact.index_before * norm(q - A) + at.exact.index_behind * norm(B - q); };
     const Vec3<Exact> forth = beside(h), back = beside(-h);
     if (!(forth.z - z - back.z == forth.z - z - back.z)) return std::nullopt;
     const Exact rises = (is_x ? Exact(-gradient.x) : Exact(-gradient.y)) / gradient.z * h;

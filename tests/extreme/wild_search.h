@@ -9,7 +9,7 @@
 
 #include "lib/numerics/parallel.h"
 #include "lib/study/rounding.h"
-#include "tests/extreme/wild_laws.h"
+#include "tests/extreme/wild_gradient_laws.h"
 #include "tests/extreme/wild_system.h"
 
 namespace sagitta::test {
@@ -54,6 +54,7 @@ class Examination {
     }
     scene_ = std::move(*compiled.scene);
     trace_rays();
+    if (!scene_.primary.gradients.empty()) same_bits_alone();
     mirrored_in_x();
     turned_by_90_degrees();
     if (with_verify) verified();
@@ -110,6 +111,21 @@ class Examination {
     for (std::size_t i = 0; i < ray_count; ++i) follow(view, states, i);
   }
 
+  // Each ray for itself, and on several threads.
+  void same_bits_alone() {
+    trace::RayBatch threads = start_;
+    trace::trace(scene_, scene_.primary, threads, 3);
+    for (std::size_t i = 0; i < start_.size(); ++i) {
+      trace::RayBatch one(1);
+      one.set(0, start_.position(i), start_.direction(i), start_.opl[i]);
+      trace::trace(scene_, scene_.primary, one);
+      count("the same bits alone");
+      for (const auto& [batch, k] : {std::pair<const trace::RayBatch&, std::size_t>{one, 0}, {threads, i}})
+        if (batch.ended[k] != image_.ended[i] || batch.position(k) != image_.position(i) || batch.direction(k) != image_.direction(i) || batch.opl[k] != image_.opl[i])
+          complain(fmt::format("ray {} is another one alone or on several threads", i + 1));
+    }
+  }
+
   // No ray is lost in silence, none comes back, and none ends at a surface that there is not.
   void adds_up(const std::vector<trace::RayBatch>& states) {
     const trace::StatusCounts counts = count_statuses(states.back());
@@ -140,18 +156,20 @@ class Examination {
       }
       if (here.ended != 0) {
         const Equation equation(scene_.surface(number).shape, model_.surfaces[static_cast<std::size_t>(number - 1)].shape);
+        if (scene_.primary.has_gradient_at(number)) count(fmt::format("ended at a gradient, {}", surface::status_names[static_cast<std::size_t>(here.ended % 8)]));
         const bool is_missed = here.ended % 8 == static_cast<int>(Status::missed);
-        if (equation.conic()) {
+        if (equation.conic() && !scene_.primary.has_gradient_at(number)) {
           count("conics that end a ray");
           if (is_missed != (textbook_meet(*equation.conic(), exact.start, exact.direction).status == Status::missed)) complain("missed by the tracer or by the textbook alone: " + where);
         }
         break;
       }
       const RoundingBound bound = rounding_bound(view, from_number, number, from, exact);
-      count("passages"), ++passed;
+      const bool is_in_gradient = scene_.primary.gradient(number - 1) != nullptr;
+      count(is_in_gradient ? "passages in gradients" : "passages"), ++passed;
       if (bound.position + bound.direction + bound.opl < std::numeric_limits<double>::infinity())
         laws({view, model_.surfaces[static_cast<std::size_t>(number - 1)].shape, from_number, number, from, exact, here, bound, wild_.scale}, states[static_cast<std::size_t>(from_number)], i, where);
-      else count("passages of which nothing is known");
+      else count(is_in_gradient ? "passages in gradients of which nothing is known" : "passages of which nothing is known");
       if (!view.is_dummy(number)) from = here, from_number = number;
     }
     if (passed >= 3) count("rays through 3 surfaces or more");
@@ -164,6 +182,11 @@ class Examination {
     hold("on the surface and the ray", off_surface(at), where);
     hold("Snell and coplanarity", snell(at), where);
     if (const auto slope = fermat(at)) hold("Fermat", *slope, where);
+    if (at.is_in_gradient()) {
+      hold("within its bound, in gradients", own_error(at), where);
+      if (const auto back = reversed_in_gradient(at)) hold("sent back in gradients", *back, where);
+    }
+    if (at.view.wavelength.has_gradient_at(at.number)) return;  // what follows is of surfaces between two indices
     if (const auto back = reversed(at)) hold("sent back", *back, where);
     if (const auto other = turned(at, start, i, u_(0, 6.3))) hold("turned about the axis", *other, where);
     const double unit = 2 * unit_roundoff * (wild_.scale + size_of(at.before.position) + size_of(at.exact.crossing.path));
@@ -176,7 +199,8 @@ class Examination {
 
   // One that ends in one way only is on the edge of ending: there are lines as near as rounding that end as it does.
   void ends_differently(const View& view, int from, int number, const ExactRay& ray, const ExactStep& exact, std::int32_t ended, const std::string& where) {
-    count("end differently");
+    const bool is_at_gradient = scene_.primary.has_gradient_at(number);
+    count(is_at_gradient ? "end differently at gradients" : "end differently");
     double carried = size_of(ray.position) + size_of(exact.start);
     for (int passed = from + 1; passed <= number; ++passed) carried += norm(scene_.surface(passed).local_from_previous.translation);
     // 2026-11-23, seeds 61044 and 95739: aspheres of power 40 that are met 1e75 mm away, from where nothing is left of where a ray is
@@ -184,7 +208,8 @@ class Examination {
     const auto bound = rounding_bound(view, from, number, ray, exact);
     double near = 64 * unit_roundoff * carried;
     if (bound.position < std::numeric_limits<double>::infinity()) near = std::max(near, bound.position);
-    for (int attempt = 0; attempt < 64; ++attempt) {
+    if (is_at_gradient) near = std::max(near, 1e3 * scene_.tolerance.mm);
+    for (int attempt = 0; attempt < (is_at_gradient ? 8 : 64); ++attempt) {
       ExactRay other = ray;
       const auto any = [&](double size) {
         const double x = u_(-size, size), y = u_(-size, size), z = u_(-size, size);
@@ -195,7 +220,7 @@ class Examination {
       if (view.look_past(from, number, other).behind.ended == ended) return;
     }
     const Status status = static_cast<Status>(ended % 8);
-    if (status == Status::not_converged || static_cast<Status>(exact.behind.ended % 8) == Status::not_converged) return count("given up by one of the two");
+    if (status == Status::not_converged || static_cast<Status>(exact.behind.ended % 8) == Status::not_converged) return count(is_at_gradient ? "given up by one of the two in gradients" : "given up by one of the two");
     complain(fmt::format("ends as {}, exactly as {}: {}", surface::status_names[static_cast<std::size_t>(ended % 8)], surface::status_names[static_cast<std::size_t>(exact.behind.ended % 8)], where));
   }
 
@@ -210,6 +235,7 @@ class Examination {
     if (!wild_.points.empty()) return;
     prescription::Model flipped = model_;
     for (prescription::Surface& surface : flipped.surfaces) {
+      if (surface.gradient && surface.gradient->kind == "quadratic") surface.gradient->parameters.numbers["x_per_mm"] *= -1;
       surface.decenter_mm.x *= -1, surface.tilt_deg.y *= -1, surface.tilt_deg.z *= -1;
       for (auto& [index, um] : surface.shape.parameters.indexed["coefficients_um"]) {
         const int m = numerics::zernike_term(numerics::ZernikeIndexing::osa, index).m;  // cos m(pi - t) = (-1)^m cos m t, sin m(pi - t) = -(-1)^m sin m t
@@ -236,7 +262,7 @@ class Examination {
     const bool is_of_revolution = std::all_of(scene_.surfaces.begin(), scene_.surfaces.end(), [](const scene::Surface& surface) {
       return std::visit([]<class S>(const S&) { return surface::has_closed_form<S>; }, surface.shape);
     });
-    if (!is_of_revolution) return;
+    if (!is_of_revolution || !scene_.primary.gradients.empty()) return;
     const numerics::Rotation<double> turn{{0, -1, 0}, {1, 0, 0}, {0, 0, 1}};
     scene::Scene other = scene_;
     for (scene::Surface& surface : other.surfaces) surface.local_from_previous = {turn * (surface.local_from_previous.rotation * turn.transposed()), turn * surface.local_from_previous.translation};
@@ -271,6 +297,18 @@ class Examination {
 inline Found search_systems(std::uint64_t first, std::uint64_t count) {
   std::vector<Found> of(count);
   numerics::share_blocks(count, 0, [&] { return [&](std::size_t i) { of[i] = Examination(first + i, i % 8 == 0).take(); }; });
+  Found all;
+  for (const Found& one : of) all.add(one);
+  return all;
+}
+
+// Those with gradient-index media among them.
+inline Found search_gradients(std::uint64_t first, std::uint64_t count) {
+  std::vector<std::uint64_t> seeds;
+  for (std::uint64_t seed = first; seed < first + count; ++seed)
+    if (WildGradients(seed).has_some()) seeds.push_back(seed);
+  std::vector<Found> of(seeds.size());
+  numerics::share_blocks(seeds.size(), 0, [&] { return [&](std::size_t i) { of[i] = Examination(seeds[i], true).take(); }; });
   Found all;
   for (const Found& one : of) all.add(one);
   return all;

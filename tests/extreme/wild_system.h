@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/extreme/wild_gradient.h"
 #include "tests/support/point_sets.h"
 #include "tests/support/prescriptions.h"
 
@@ -27,7 +28,7 @@ struct WildSystem {
 
 class WildGenerator {
  public:
-  explicit WildGenerator(std::uint64_t seed) : u(0x9e3779b97f4a7c15u * (seed + 1)) { u(), u(); }
+  explicit WildGenerator(std::uint64_t seed) : u(0x9e3779b97f4a7c15u * (seed + 1)), gradients_(seed) { u(), u(); }
 
   WildSystem system() {
     system_.scale = log_uniform(-6, 6);
@@ -198,6 +199,7 @@ class WildGenerator {
       sense_ = -sense_;
       return "mirror";
     }
+    if (gradients_.next()) return gradients_.medium(system_.scale, system_.beam_radius, index_, sense_);
     if (kind < .3) index_ = is(.5) ? index_ : 1;
     else if (kind < .42) index_ *= 1 + sign() * log_uniform(-14, -2);
     else index_ = kind < .46 ? log_uniform(-1, 1) : u(1, 1.9);
@@ -217,6 +219,7 @@ class WildGenerator {
   }
 
   Uniform u;
+  WildGradients gradients_;
   WildSystem system_;
   double index_ = 1, object_index_ = 1, sense_ = 1;
   bool has_points_ = false;

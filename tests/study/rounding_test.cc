@@ -228,7 +228,8 @@ TEST(Rounding, IsTheSameForAnyNumberOfThreads) {
   }
 }
 
-// The exact rays bend too: what the tolerance leaves is seen at the surface that ends the medium.
+// The exact rays bend too: what the tolerance leaves is seen at the surface that ends the medium, and is what the estimate of it allows: a step's tolerance, for 5 steps or so
+// at 1e-12 mm and 2 at 1e-6 mm, 2 more, twice, with variations of a size of 3 mm/(n0 g) at most.
 TEST(Rounding, OfARayInAGradientIsWhatItsToleranceLeaves) {
   const auto of = [](const std::string& tolerance) {
     const auto compiled = checked(compile_text(prescription_of("  - {stop: true, thickness_mm: 20, medium: {grin: {selfoc: {index: 1.6, g_per_mm: 0.3}}}}\n"
@@ -238,11 +239,37 @@ TEST(Rounding, OfARayInAGradientIsWhatItsToleranceLeaves) {
   const Rounding fine = of(""), coarse = of("tolerance_mm: 1e-6\n");
   EXPECT_TRUE(fine.disagreements.empty());
   EXPECT_LE(fine.surfaces[2].own_position_mm.worst(), 1e-12 * 40);
-  EXPECT_GE(fine.surfaces[2].without_bound, 7);
   EXPECT_GT(coarse.surfaces[2].own_position_mm.worst(), 1e-10);
   EXPECT_LE(coarse.surfaces[2].own_position_mm.worst(), 1e-6 * 40);
   EXPECT_EQ(coarse.surfaces[2].cause, "the tolerance in a gradient, and many operations");
   EXPECT_LE(coarse.surfaces[3].own_position_mm.worst(), 1e-14);
+  for (const Rounding* one : {&fine, &coarse})
+    for (std::size_t k = 1; k <= 3; ++k) {
+      EXPECT_EQ(one->surfaces[k].without_bound, 0) << k;
+      EXPECT_EQ(one->surfaces[k].bound_position_mm.count(), 7) << k;
+      EXPECT_LE(one->surfaces[k].of_bound, 1) << k;
+    }
+  EXPECT_GT(coarse.surfaces[2].bound_position_mm.worst(), 1e-6);
+  EXPECT_LT(coarse.surfaces[2].bound_position_mm.worst(), 1e-6 * 1000);
+  EXPECT_GT(fine.surfaces[2].bound_opl_mm.worst(), 1e-12);
+  EXPECT_LT(fine.surfaces[2].bound_opl_mm.worst(), 1e-12 * 5000);
+}
+
+// A rod of 20 pitches, and a medium in which rays part by a factor of e every mm for 12 mm: what a step leaves at its start is as much larger at the end.
+TEST(Rounding, OfAGradientGrowsAsRaysPart) {
+  const auto bound_of = [](const std::string& form, double length) {
+    const auto compiled = checked(compile_text(prescription_of(fmt::format("  - {{stop: true, thickness_mm: {}, medium: {{grin: {{{}}}}}}}\n  - {{}}\n", length, form), "entrance_pupil_diameter_mm: 1e-3")));
+    const study::SurfaceRounding at_end = rounding_of(compiled.scene, {.rays = 7}).surfaces.at(2);
+    EXPECT_EQ(at_end.bound_position_mm.count(), 7) << form;
+    EXPECT_LE(at_end.of_bound, 1) << form;
+    return at_end.bound_position_mm.worst();
+  };
+  const double rod = bound_of("selfoc: {index: 1.6, g_per_mm: 1}", 126);
+  EXPECT_LT(rod, 1e-12 * 2 * 150 * 10);  // its rays do not part: steps alone count
+  const double parts = bound_of("quadratic: {index: 1, x2_per_mm2: 1, y2_per_mm2: 1}", 12), hardly = bound_of("quadratic: {index: 1, x2_per_mm2: 1, y2_per_mm2: 1}", 4);
+  EXPECT_GT(parts, std::exp(7.5) * hardly);  // e^8 of them
+  EXPECT_GT(parts, 1e-12 * std::exp(12.0));
+  EXPECT_LT(parts, 1e-12 * std::exp(12.0) * 100);
 }
 
 TEST(TrueRays, BendInGradientsAndDoNotStudyTheirSurfaces) {
