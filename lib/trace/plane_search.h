@@ -4,7 +4,7 @@
 //
 //   p' = p + s J^-1 (target - F(p)),   J_ij = dF_i/dp_j by central differences     (1)
 //
-// s is 1, or as many times halved as it takes for the miss, the larger of |target - F|'s components, to fall by an eighth of s. Each target's way depends on nothing but itself:
+// s is 1, or as many times halved as it takes for the miss, the larger of |target - F|'s components, to fall. Each target's way depends on nothing but itself:
 // where it stands among the others, and who they are, changes no bit.
 //
 // The differences' step h is a share of 1 + |p|: J is off by h^2 F'''/6 and by the rounding of F over h, 1e-9 of it for maps that are good to 1e-14; the
@@ -102,7 +102,7 @@ void search_plane(const Map& map, std::span<PlaneSearch> all) {
       for (std::size_t k = 0; k < trying.size(); ++k) {
         PlaneSearch moved = all[trying[k]];
         moved.place = places[k], moved.image = images[k];
-        if (moved.miss() < (1 - share / 8) * all[trying[k]].miss()) all[trying[k]] = moved, going.push_back(trying[k]);
+        if (moved.miss() < all[trying[k]].miss()) all[trying[k]] = moved, going.push_back(trying[k]);
         else still.push_back(trying[k]);
       }
       trying = std::move(still);
