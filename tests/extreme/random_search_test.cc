@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A few of the random systems of random_search_slow_test.cc, and one alone: SAGITTA_SEED=123 replays what was found with that seed, and
-// prints the system. (Some have surfaces of points, delaunay, or gradient-index media.)
+// prints the system. (Some have surfaces of points, delaunay, or of heights on a grid, or gradient-index media.)
 #include <cstdlib>
 
 #include "tests/extreme/wild_search.h"
@@ -17,6 +17,7 @@ TEST(RandomSearch, LawsHoldInAFewWildSystems) {
   for (const char* law : {"within its bound", "on the surface and the ray", "Snell and coplanarity", "Fermat", "sent back"}) EXPECT_GE(found.counts.at(law), 2500) << law;
   for (const char* law : {"turned about the axis", "mirrored in x"}) EXPECT_GE(found.counts.at(law), 600) << law;
   for (const char* law : {"turned by 90 degrees", "verify"}) EXPECT_GE(found.counts.at(law), 50) << law;
+  EXPECT_GE(found.counts.at("at bicubic grid"), 10);
 }
 
 TEST(RandomSearch, LawsHoldInAFewWildGradients) {
