@@ -45,9 +45,12 @@ Sizes at_end(const State<Carried>& at, const Sizes& off) {
   return {r, p, off.opl + std::hypot(S[0], S[1], S[2]) * r + std::hypot(S[3], S[4], S[5]) * p};
 }
 
-// (3)
-Sizes off_by(const State<Carried>& from, const State<Carried>& to, const Tolerance& tolerance) {
-  const auto held = [&](double of, double rounding) { return std::max(tolerance.mm, 128 * u * of) + rounding; };
+Sizes sum(const Sizes& a, const Sizes& b) { return {a.position + b.position, a.optical_direction + b.optical_direction, a.opl + b.opl}; }
+Sizes times(double factor, const Sizes& a) { return {factor * a.position, factor * a.optical_direction, factor * a.opl}; }
+
+// What of (3) goes with the length of a step: rounding, and what the error may be for it.
+Sizes rounding_of(const State<Carried>& from, const State<Carried>& to) {
+  const auto held = [](double of, double rounding) { return 128 * u * of + rounding; };
   return {held(gradient_index::size_of(Vec3<Carried>(to.position - from.position)), rounding_of(to.position)), held(gradient_index::size_of(from.optical_direction), rounding_of(to.optical_direction)),
           held(gradient_index::size_of(Carried(to.opl - from.opl)), to.opl.rounding)};
 }
@@ -60,28 +63,30 @@ std::optional<Sizes> carried_to(const Medium& medium, const Vec3<double>& hit, c
   const auto n_squared = [&] { return at.squared_index.value; };
   ray.optical_direction = variable(std::sqrt(n_squared()) * arriving, 3);
   at = medium.at(ray.position);
-  Sizes worst;
+  Sizes of_tolerance, of_rounding;
   int taken = 0;
   double longest = std::numeric_limits<double>::infinity();
   for (int tries = 0; tries < 2 * gradient_index::most_steps; ++tries) {
     const double left = path + ray.opl.value;  // what is behind is negative
     if (std::abs(left) <= 1e-6 * std::abs(path)) {
       const double n = std::sqrt(n_squared()), of_length = 8 * u + at.squared_index.rounding / n_squared();
-      const Sizes own = at_end(ray, {start.line, n * (start.turn + of_length), 0}), known{2 * (std::max(taken, steps) + 2.0) * worst.position,
-                  2 * (std::max(taken, steps) + 2.0) * worst.optical_direction, 2 * (std::max(taken, steps) + 2.0) * worst.opl};
-      const Sizes sum{own.position + known.position, own.optical_direction + known.optical_direction, own.opl + known.opl};
-      return is_finite(sum) ? std::optional(sum) : std::nullopt;
+      const Sizes own = at_end(ray, {start.line, n * (start.turn + of_length), 0}), of_steps = times(2, sum(times(steps + 2, of_tolerance), times(taken + 2, of_rounding)));  // (4)
+      const Sizes all = sum(own, of_steps);
+      return is_finite(all) ? std::optional(all) : std::nullopt;
     }
     if (!gradient_index::is_squared_index(n_squared())) return std::nullopt;
-    const double turn_limit = std::sqrt(n_squared()) / gradient_index::size_of(at.pull);
-    const double h = -std::copysign(std::min({longest, turn_limit, std::abs(left) / n_squared()}), left);
+    // Variations obey r'' = H r, H the derivative of the pull: they are followed where the ray itself, along an axis, needs no steps at all.
+    const InMedium<Carried> here = medium.at(variable(vec3_cast<double>(ray.position), 0));
+    const double turn_limit = std::sqrt(n_squared()) / gradient_index::size_of(here.pull), parting_limit = 1 / std::sqrt(size_of_slopes(here.pull, 0));
+    const double h = -std::copysign(std::min({longest, turn_limit, parting_limit, std::abs(left) / n_squared()}), left);
     State<Carried> from = ray;
     forget_rounding(from.position), forget_rounding(from.optical_direction), from.opl.rounding = 0;
     const auto next = gradient_index::leap(medium, from, medium.at(from.position), Carried(h), tolerance);
     longest = std::abs(h) * gradient_index::step_factor(next.error);
     if (!(next.error <= 1)) continue;
-    const Sizes off = off_by(from, next.behind, tolerance);
-    worst = larger(worst, larger(at_end(from, off), at_end(next.behind, off)));
+    const Sizes held{tolerance.mm, tolerance.mm, tolerance.mm}, off = rounding_of(from, next.behind);
+    of_tolerance = larger(of_tolerance, larger(at_end(from, held), at_end(next.behind, held)));
+    of_rounding = larger(of_rounding, larger(at_end(from, off), at_end(next.behind, off)));
     ray = next.behind, at = medium.at(ray.position), ++taken;
   }
   return std::nullopt;

@@ -7,10 +7,11 @@
 // what (r, p) is off by at t is at the end
 //   |dr_end| <= |D| |dr| + |B| |dp|,   |dp_end| <= |C| |dr| + |A| |dp|,   |dS_end| <= |dS| + |S_r| |dr_end| + |S_p| |dp_end|   (2)
 // S_r, S_p the derivatives of the path between t and the end; sizes are Frobenius norms. One step is off by no more than
-//   max(tolerance, 64 eps |its increment|) + rounding                                                               (3)
-// of each of r, p, S: the first is what the error estimate of the pair of order 12(10) is held to, which is that of its lower order; the second is carried along in the same
-// arithmetic (carried_internal.h). With N steps, and 2 for the one that meets the surface and the straight rest there,
-//   off at the end <= 2 (N + 2) max over t of (2) with (3),   + (2) with what the ray was uncertain by at its start       (4)
+//   tolerance + 64 eps |its increment| + rounding                                                                   (3)
+// of each of r, p, S: the larger of the first two is what the error estimate of the pair of order 12(10) is held to, which is that of its lower order; rounding is carried along in
+// the same arithmetic (carried_internal.h), in steps of this analysis's own: short enough for the variations too. With N steps of the tracer and M of these, and 2 for the
+// one that meets the surface and the straight rest there,
+//   off at the end <= 2 ((N + 2) max over t of (2) with the tolerance + (M + 2) that with the rest of (3)) + (2) with what the ray was uncertain by at its start   (4)
 // 2 for what the variations change by within a step.
 //
 // This is an estimate where the rest of rounding_bound_internal.h is a bound: that a step's error is not above its estimate, and that variations are enough (the error is
