@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <ostream>
 #include <set>
 #include <string>
 #include <string_view>
@@ -24,6 +25,7 @@ using ::testing::StartsWith;
 
 struct OfShape {
   const char *name, *yaml, *kernel;
+  friend void PrintTo(const OfShape& of, std::ostream* out) { *out << of.name; }  // its bytes are addresses
 };
 constexpr OfShape shapes[]{
     {"plane", "plane: {}", "plane"},
