@@ -172,11 +172,11 @@ class Traveller {
       const State<T> state = at_time(t);
       const InMedium<T> at = medium_.at(state.position);
       const double n = std::sqrt(static_cast<double>(at.squared_index)), step = std::abs(h) * n;
-      const Crossing<T> crossing = crossing_near(state, step);
+      const auto [crossing, bends_away] = crossing_near(state, step);
       const double d = size_of(crossing.path);
       if (!(d <= step)) break;  // another crossing, far away, or none
       const double turn = d * std::max(size_of(at.pull), size_of(medium_.at(crossing.point).pull)) / (n * n);
-      if ((turn * turn <= rounding && d <= 1e-3 * step) || d <= 8 * rounding * size_of(state.position)) {
+      if ((turn * turn <= rounding && d <= 1e-3 * step && bends_away <= 8 * rounding * size_of(state.position)) || d <= 8 * rounding * size_of(state.position)) {
         arrival_ = arrive(state, at, crossing);
         return Found::crossing;
       }
@@ -185,17 +185,25 @@ class Traveller {
     return std::isnan(height(in_doubles(at_time(t_behind)).position)) ? Found::none : Found::nothing_settled;
   }
   // By the surface's own meet(), or, of a ray that has turned over, which meet() would send to its other crossing, by the tangent plane below the place: then what is
-  // met in the end, when nothing is left of the path, is the surface too.
-  Crossing<T> crossing_near(const State<T>& state, double step) {
+  // met in the end, when it bends away from that plane by nothing, is the surface too.
+  struct Near {
+    Crossing<T> crossing;
+    double bends_away;  // the surface, there, from where the crossing is
+  };
+  Near crossing_near(const State<T>& state, double step) {
     const Vec3<T> d = unit(state.optical_direction);
     const Crossing<T> met = surface_.meet(state.position, d);
     if (met.status == Status::outside_data) why_ = Status::outside_data;
-    if (met.status == Status::ok && size_of(met.path) <= step) return met;
+    if (met.status == Status::ok && size_of(met.path) <= step) return {met, 0};
     const auto tangent = surface_.tangent(state.position.x, state.position.y);
-    const Vec3<T> normal{-tangent.slope.x, -tangent.slope.y, T(1)};
-    const T along = dot(d, normal), path = (tangent.sag - state.position.z) / along;
-    if (!(static_cast<double>(along) * sense_ * side_ < 0)) return surface::no_crossing<T>(Status::missed);
-    return {path, state.position + path * d, normal, along, Status::ok};
+    const T along = d.z - tangent.slope.x * d.x - tangent.slope.y * d.y, path = (tangent.sag - state.position.z) / along;
+    if (!(static_cast<double>(along) * sense_ * side_ < 0)) return {surface::no_crossing<T>(Status::missed), 0};
+    const Vec3<T> point = state.position + path * d;
+    const auto slope = surface_.tangent(point.x, point.y).slope;
+    const double turns = std::hypot(size_of(T(slope.x - tangent.slope.x)), size_of(T(slope.y - tangent.slope.y)));
+    if (!(turns >= 0)) return {surface::no_crossing<T>(Status::missed), 0};  // NaN beyond the surface's domain
+    const Vec3<T> normal{-slope.x, -slope.y, T(1)};
+    return {{path, point, normal, dot(d, normal), Status::ok}, turns * size_of(path)};
   }
   static T sqrt_of(const T& x) {
     using std::sqrt;

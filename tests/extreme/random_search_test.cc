@@ -28,6 +28,13 @@ TEST(RandomSearch, LawsHoldInAFewWildGradients) {
   for (const char* law : {"within its bound, in gradients", "sent back in gradients"}) EXPECT_GE(found.counts.at(law), 60) << law;
 }
 
+// 2026-11-23, seed 2939: a hit by the tangent plane, from a surface that bends away from it (gradient_index/travel.h).
+TEST(RandomSearch, LawsHoldInWhatItFoundInGradients) {
+  const Found found = Examination(2939, true).take();
+  for (const std::string& complaint : found.complaints) ADD_FAILURE() << complaint;
+  EXPECT_GE(found.counts.at("within its bound, in gradients"), 10);
+}
+
 TEST(RandomSearch, ReplaysOneSeed) {
   const char* seed = std::getenv("SAGITTA_SEED");
   if (!seed) GTEST_SKIP() << "SAGITTA_SEED is not set";
