@@ -126,7 +126,7 @@ std::int64_t Aim::search_from_axis(PlaneSearch& one) const {
     double t;
     PupilPoint u;
   };
-  const bool begins = look(0, one.target);
+  const bool begins = look(0, one.target) || begin_anywhere(0);
   Known before{0, one.place}, last = before;
   const double first = angle_ > 0 ? std::min(1.0, first_part / angle_) : 1;
   for (double part = first; begins && last.t < 1 && part >= least_part * first;) {

@@ -46,16 +46,12 @@ class ImagePlace {
       return search.miss() <= good_enough;
     };
     if (!find(0, {})) return std::nullopt;
-    PupilPoint before = search.place, last = before;
-    double t_before = 0, t_last = 0;
+    PupilPoint last = search.place;
+    double t_last = 0;
     for (double part = first_part; t_last < 1 && part >= least_part;) {
-      const double t = std::min(1.0, t_last + part), ahead = t_last > t_before ? (t - t_last) / (t_last - t_before) : 0;
-      if (find(t, {last.x + ahead * (last.x - before.x), last.y + ahead * (last.y - before.y)})) {
-        before = last, t_before = t_last;
-        last = search.place, t_last = t;
-      } else {
-        part /= 2;
-      }
+      const double t = std::min(1.0, t_last + part);
+      if (find(t, last)) last = search.place, t_last = t;
+      else part /= 2;
     }
     return t_last == 1 ? std::optional(field_at(last)) : std::nullopt;
   }

@@ -237,7 +237,7 @@ TEST(Aim, finds_a_part_without_the_chief_ray) {
 
 // Behind a lens that turns the pupil upside down, a point of the stop is no beginning for its own search: it misses the ball.
 TEST(Aim, finds_a_disc_on_the_other_side_of_the_centre) {
-  const CompiledScene compiled = scene_of("  - {conic: {radius_mm: -1}, decenter_mm: [0, 3, 0], thickness_mm: 5}\n  - {conic: {radius_mm: 200}, thickness_mm: 0, medium: {index: 1.5}}\n"
+  const CompiledScene compiled = scene_of("  - {conic: {radius_mm: -2.5}, decenter_mm: [0, 3, 0], thickness_mm: 5}\n  - {conic: {radius_mm: 200}, thickness_mm: 0, medium: {index: 1.5}}\n"
                                           "  - {conic: {radius_mm: -200}, thickness_mm: 400}\n  - {stop: true, thickness_mm: 5}\n  - {}\n", "stop_diameter_mm: 8, aim: stop");
   const Met all = met(compiled.scene, compiled.scene.fields[0], std::vector<PupilPoint>{{0, -0.75}, {0.05, -0.7}, {-0.1, -0.8}}, compiled.wavelength());
   EXPECT_EQ(all.lost, 0u);
