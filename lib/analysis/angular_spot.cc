@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lib/numerics/instruction_set.h"
+#include "lib/numerics/lanes.h"
+
 namespace sagitta::analysis {
 namespace {
 
@@ -18,7 +21,17 @@ Vec3<double> across(const Vec3<double>& c) {
 }  // namespace
 
 AngularSpotCollector::AngularSpotCollector(const Vec3<double>& nodal_point, const Vec3<double>& centre)
-    : nodal_point_(nodal_point), forward_(normalized(centre - nodal_point)), right_(across(forward_)), up_(cross(forward_, right_)), chords_(SpotImage(2, 1, 0, 0)) {}
+    : nodal_point_(nodal_point), forward_(normalized(centre - nodal_point)), right_(across(forward_)), up_(cross(forward_, right_)), chords_(SpotImage(0, 1, 0, 0)) {}
+
+// (1), of one point or of several in a vector.
+template <class T>
+AngularSpotCollector::Chord<T> AngularSpotCollector::chord_of(const T& x, const T& y, const T& z) const {
+  using std::sqrt;
+  const T vx = x - T(nodal_point_.x), vy = y - T(nodal_point_.y), vz = z - T(nodal_point_.z);
+  const auto along = [&](const Vec3<double>& axis) { return vx * T(axis.x) + vy * T(axis.y) + vz * T(axis.z); };
+  const T r = sqrt(vx * vx + vy * vy + vz * vz), scale = sqrt(T(2) / (r * (r + along(forward_))));
+  return {along(right_) * scale, along(up_) * scale};
+}
 
 void AngularSpotCollector::add(const trace::RayBatch& rays) {
   constexpr std::size_t block_size = 256;
@@ -27,10 +40,19 @@ void AngularSpotCollector::add(const trace::RayBatch& rays) {
   for (std::size_t from = 0; from < rays.size(); from += block_size) {
     const std::size_t count = std::min(block_size, rays.size() - from);
     const double *x = &rays.x[from], *y = &rays.y[from], *z = &rays.z[from];
+    numerics::with_chosen_instructions_flat([&]<int n>() {
+      using Vector = numerics::Lanes<n>;
+      std::size_t i = 0;
+      for (; i + n <= count; i += n) {
+        const auto chord = chord_of(Vector::load(x + i), Vector::load(y + i), Vector::load(z + i));
+        chord.a.store(a + i), chord.b.store(b + i);
+      }
+      for (; i < count; ++i) {
+        const auto chord = chord_of(x[i], y[i], z[i]);
+        a[i] = chord.a, b[i] = chord.b;
+      }
+    });
     for (std::size_t i = 0; i < count; ++i) {
-      const Vec3<double> v = Vec3<double>{x[i], y[i], z[i]} - nodal_point_;
-      const double r = std::sqrt(dot(v, v)), scale = std::sqrt(2 / (r * (r + dot(v, forward_))));  // (1)
-      a[i] = dot(v, right_) * scale, b[i] = dot(v, up_) * scale;
       const bool has_angle = a[i] * a[i] + b[i] * b[i] < 8;  // not at the nodal point
       ended[i] = has_angle ? rays.ended[from + i] : trace::ending(1, surface::Status::missed);
     }

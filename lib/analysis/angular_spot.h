@@ -31,6 +31,13 @@ class AngularSpotCollector {
   AngularSpot spot(const numerics::Rotation<double>& global_from_local) const;
 
  private:
+  template <class T>
+  struct Chord {
+    T a, b;
+  };
+  template <class T>
+  Chord<T> chord_of(const T& x, const T& y, const T& z) const;
+
   numerics::Vec3<double> nodal_point_, forward_, right_, up_;
   SpotCollector chords_;
 };

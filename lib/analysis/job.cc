@@ -73,7 +73,7 @@ bool frame_spots(const Launchers& launchers, std::size_t field, std::span<const 
   SpotFrames::Centre& centre = frames.centres[field];
   bool centred = false;
   for (std::size_t w = 0; w < launchers.scene.wavelengths.size(); ++w) {
-    SpotCollector collector(SpotImage(2, 1, 0, 0));
+    SpotCollector collector(SpotImage(0, 1, 0, 0));
     const trace::RayBatch rays = launchers.traced(field, w, pupil, 1);
     collector.add(rays);
     const Spot spot = collector.spot();

@@ -106,7 +106,7 @@ void SpotCollector::add_block(const double* x, const double* y, const std::int32
     y_.add<n>(dy, whole);
     squares_.add<n>(squares, whole);
     for (std::size_t i = count; i < whole; ++i) dx[i] = dx[count - 1], dy[i] = dy[count - 1];
-    image_.add_from_centre<n>(dx, dy, count);
+    if (image_.size > 0) image_.add_from_centre<n>(dx, dy, count);
     hull_.add<n>(dx, dy, count);
   });
 }

@@ -26,7 +26,7 @@ struct Spot {
 // Ray counts per pixel of a square image; row 0 is the top (largest y). Its centre is the corner of four pixels, so
 // pixels of twice the size hold the sums of four.
 struct SpotImage {
-  int size = 0;  // even
+  int size = 0;  // even; 0: no image
   double pixel_mm = 0, centre_x = 0, centre_y = 0;
   std::vector<std::uint32_t> counts;  // size x size
 
@@ -45,7 +45,7 @@ struct SpotImage {
 
 class SpotCollector {
  public:
-  // `image` is empty and tells the scale to begin with; its centre is the provisional centre.
+  // `image` is empty and tells the scale to begin with; its centre is the provisional centre. One of size 0 stays so, and costs nothing.
   explicit SpotCollector(SpotImage image) : image_(std::move(image)) {}
 
   void add(const trace::RayBatch& rays) { add(rays.x.data(), rays.y.data(), rays.ended.data(), rays.size()); }
