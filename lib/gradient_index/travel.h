@@ -5,7 +5,7 @@
 // the ray is looked at in four places, on the polynomial through both ends. It crosses where its height above the sag,
 //   g = z - S(x, y),                                                                                                 (1)
 // changes its sign from the side on which it comes; the crossing is drawn in on that polynomial, and then found by Newton's method on the ray itself: a step from
-// the start to there, the surface's own meet() along the tangent, a path d left over, and so on until the ray turns on d by less than the square root of
+// the start to there (beyond the surface's domain, where there is no height, the chords between these places tell), the surface's own meet() along the tangent, a path d left over, and so on until the ray turns on d by less than the square root of
 // rounding. Then the rest is straight, its turn to second order:
 //   r + d p/n,   p + (d/n) (pull + pull')/2,   S + d (n + n')/2                                                        (2)
 // So a hit is on the surface to rounding, and the path to it as good as the steps.
@@ -130,13 +130,15 @@ class Traveller {
   Found look_within(const State<T>& to, const InMedium<T>& at_to, double h) {
     const State<double> a = in_doubles(from_), b = in_doubles(to);
     const auto pull_a = numerics::vec3_cast<double>(at_.pull), pull_b = numerics::vec3_cast<double>(at_to.pull);
-    const auto height_at = [&](double part) { return height(part == 1 ? b.position : place_within(a, pull_a, b, pull_b, h, part)); };
+    const auto place_at = [&](double part) { return part == 0 ? a.position : part == 1 ? b.position : place_within(a, pull_a, b, pull_b, h, part); };
+    const auto height_at = [&](double part) { return height(place_at(part)); };
     // Whether it comes nearer there, over the last thousandth of the step: rounding does not show in that.
     const auto comes_nearer = [&](double part) { return (height_at(part) - height_at(part - 1e-3)) * side_ < 0; };
     double behind = 0;  // the part of the step that is behind
-    bool was_before = was_before_, came_nearer = came_nearer_;
+    bool was_before = was_before_, came_nearer = came_nearer_, had_height = !std::isnan(height_at(0));
     for (const double part : {0.25, 0.5, 0.75, 1.0}) {
-      const bool is_before_here = is_before(height_at(part)), comes_nearer_here = comes_nearer(part);
+      const double g = height_at(part);
+      const bool has_height = !std::isnan(g), is_before_here = is_before(g), comes_nearer_here = comes_nearer(part);
       double beyond_it = part;  // where the surface is behind
       bool crosses = was_before && !is_before_here;
       if (was_before && is_before_here && came_nearer && !comes_nearer_here) {  // perhaps there and back: nearest in between
@@ -147,11 +149,22 @@ class Traveller {
         const double low = last_where([&](double where) { return is_before(height_at(where)); }, behind, beyond_it);
         const Found found = settle(T(low * h), T(std::min(low + 1e-6, part) * h), h);
         if (found != Found::none) return found;
+      } else if (!had_height || !has_height) {  // a surface that ends there: what the chord meets
+        if (const double share = met_by_chord(place_at(behind), place_at(part)); share <= 1)
+          if (const Found found = settle(T((behind + share * (part - behind)) * h), T(part * h), h); found != Found::none) return found;
       }
+      had_height = has_height;
       was_before = is_before_here, came_nearer = comes_nearer_here, behind = part;
     }
     was_before_ = was_before, came_nearer_ = came_nearer;
     return Found::none;
+  }
+  // The share of the way at which a chord meets the surface from the side on which the ray comes; infinite where it does not.
+  double met_by_chord(const Vec3<double>& from, const Vec3<double>& to) const {
+    const double length = norm(to - from);
+    const Crossing<T> met = surface_.meet(numerics::vec3_cast<T>(from), numerics::vec3_cast<T>((1 / length) * (to - from)));
+    const bool is_on_the_way = met.status == Status::ok && met.path >= T(0) && static_cast<double>(met.along) * side_ < 0;
+    return is_on_the_way ? static_cast<double>(met.path) / length : std::numeric_limits<double>::infinity();
   }
   // It is so at `low`, not at `high`: the last place where it is, to 1e-6.
   template <class IsSo>

@@ -334,7 +334,7 @@ void CodeVReader::finish() {
   Surface& image = lens_.surfaces.back();
   lens_.image_shift = std::exchange(image.thickness, 0);  // the defocus
   lens_.surfaces[lens_.surfaces.size() - 2].thickness += lens_.image_shift;
-  if (image.medium.kind != Medium::Kind::air) report_.left_out(image.medium.place, "SI: a medium behind the image surface");
+  if (image.medium.kind != Medium::Kind::air) report_.warning(image.medium.place, "SI: what is behind the image surface is left out: no ray gets there");
   image.medium = {};
   if (object.stop) report_.broken({file_}, "the object is the stop");
   const bool has_stop = std::any_of(lens_.surfaces.begin(), lens_.surfaces.end(), [](const Surface& one) { return one.stop; });

@@ -330,7 +330,7 @@ void ZemaxReader::finish_surfaces() {
     const bool is_last = i + 1 == surfaces_.size();
     if (given.infinite) report_.broken(given.thickness.place, "DISZ INFINITY: only the object may be at infinity");
     if (is_last && given.medium.kind != Medium::Kind::air)
-      report_.left_out(given.medium.place, "GLAS: a medium behind the image surface, which is the last one", "does the file end too early?");
+      report_.warning(given.medium.place, "GLAS: what is behind the image surface, the last one, is left out: no ray gets there", "if it is not the image, the file ends too early");
     if (is_last && given.thickness.value != 0)
       report_.left_out(given.thickness.place, "DISZ: a thickness behind the image surface, which is the last one", "does the file end too early?");
     if (!given.is_coordinate_break()) {
@@ -350,7 +350,7 @@ void ZemaxReader::finish_surfaces() {
   lens_.surfaces.back().medium = {};
   lens_.surfaces.back().thickness = 0;
   if (std::isfinite(lens_.object_distance)) lens_.object_distance += static_cast<double>(lens_.surfaces.front().thickness_before);
-  if (std::isfinite(lens_.object_distance) && lens_.object_distance == 0) report_.broken(object.thickness.place, "the object stands at the first surface");
+  if (std::isfinite(lens_.object_distance) && lens_.object_distance == 0) report_.broken(object.thickness.place.line > 0 ? object.thickness.place : object.place, "the object stands at the first surface", "DISZ of SURF 0 tells how far it is, or INFINITY");
   const auto stops = std::count_if(lens_.surfaces.begin(), lens_.surfaces.end(), [](const Surface& one) { return one.stop; });
   if (stops != 1) report_.broken({file_}, stops == 0 ? "no surface is the stop (STOP)" : fmt::format("{} surfaces are the stop (STOP)", stops));
 }

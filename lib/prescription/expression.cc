@@ -23,6 +23,23 @@ constexpr int most_depth = 50;
 double radians(double degrees) { return degrees * (std::numbers::pi / 180); }
 
 using Arguments = std::vector<double>;
+
+// By whole quarters of a turn and a rest of 45 degrees at most, so that sin 180 is 0, cos 60 is 1/2 to rounding and tan 90 is no number.
+double sine_of_quarters(double degrees, int more_quarters) {
+  if (!std::isfinite(degrees)) return std::numeric_limits<double>::quiet_NaN();
+  int quarters = 0;
+  const double rest = radians(std::remquo(degrees, 90.0, &quarters));
+  switch (static_cast<unsigned>(quarters + more_quarters) % 4) {  // remquo tells three bits of the quotient, and its sign
+    case 0: return std::sin(rest) + 0.0;
+    case 1: return std::cos(rest);
+    case 2: return 0.0 - std::sin(rest);
+    default: return -std::cos(rest);
+  }
+}
+double sin_deg(const Arguments& x) { return sine_of_quarters(x[0], 0); }
+double cos_deg(const Arguments& x) { return sine_of_quarters(x[0], 1); }
+double tan_deg(const Arguments& x) { return sin_deg(x) / cos_deg(x); }
+
 struct Function {
   std::string_view name;
   bool takes_several;
@@ -33,9 +50,9 @@ constexpr std::array functions{
     Function{"exp", false, [](const Arguments& x) { return std::exp(x[0]); }},
     Function{"ln", false, [](const Arguments& x) { return std::log(x[0]); }},
     Function{"sqrt", false, [](const Arguments& x) { return std::sqrt(x[0]); }},
-    Function{"sin_deg", false, [](const Arguments& x) { return std::sin(radians(x[0])); }},
-    Function{"cos_deg", false, [](const Arguments& x) { return std::cos(radians(x[0])); }},
-    Function{"tan_deg", false, [](const Arguments& x) { return std::tan(radians(x[0])); }},
+    Function{"sin_deg", false, sin_deg},
+    Function{"cos_deg", false, cos_deg},
+    Function{"tan_deg", false, tan_deg},
     Function{"min", true, [](const Arguments& x) { return *std::min_element(x.begin(), x.end()); }},
     Function{"max", true, [](const Arguments& x) { return *std::max_element(x.begin(), x.end()); }}};
 

@@ -105,7 +105,7 @@ ordered_json gradient_schema() {
 // A mapping or a list of its own kind, by its name.
 ordered_json special(const Key& key) {
   if (key.name == "parameters") return parameters_schema();
-  if (key.name == "catalogs") return list_of({{"type", "string"}, {"minLength", 1}}, 1);
+  if (key.name == "catalogs") return list_of({{"type", "string"}, {"minLength", 1}}, 0);
   if (key.name == "grin") return gradient_schema();
   if (key.name == "aperture") return with_one_of(mapping(aperture_section_keys), aperture_keys);
   if (key.name == "fields") return with_one_of(mapping(field_keys), field_keys);

@@ -223,6 +223,20 @@ TEST(Travel, AStepTurnsARayByARadianAtMost) {
   }
 }
 
+// 2026-11-23, seed 16831 of the random search: a surface whose domain, here a radius of 0.085 mm, is less than a quarter of a step was missed from beside it.
+TEST(Travel, ASmallSurfaceIsMetFromBesideIt) {
+  const Conic dome{-1.5, 310};
+  const Selfoc gentle{1.6, 0.02};
+  for (const double x : {-0.01, 0.0, 0.01}) {
+    const Vec3<double> d = numerics::normalized(Vec3<double>{1, 0.3, 0.8}), start = Vec3<double>{x, 0.01, 0} - 3 * d;
+    const auto at = arrival(gentle, 7, dome, start, d);
+    const auto exact = arrival<FiftyDigits>(gentle, 7, dome, start, d, 1e-25);
+    ASSERT_EQ(at.crossing.status, Status::ok) << x;
+    ASSERT_EQ(exact.crossing.status, Status::ok) << x;
+    EXPECT_LE(distance(exact.state.position, at.state.position), 1e-10);
+  }
+}
+
 TEST(Travel, ARaySentBackReturns) {
   int returned = 0;
   for_each_random_case(200, [&](const Polynomial& form, double before, const Conic& shape, const Vec3<double>& start, const Vec3<double>& d) {

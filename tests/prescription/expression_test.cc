@@ -2,9 +2,11 @@
 // The grammar of values that are computed: what it gives, and where it says what is wrong.
 #include "lib/prescription/expression.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 namespace sagitta::prescription {
 namespace {
@@ -35,6 +37,13 @@ TEST(Expression, HasTheValueOfItsArithmetic) {
   EXPECT_NEAR(value_of("sin_deg(30)"), 0.5, 4e-16);
   EXPECT_NEAR(value_of("cos_deg(60)"), 0.5, 4e-16);
   EXPECT_NEAR(value_of("tan_deg(45)"), 1, 1e-15);
+  // 2026-11-23: tan_deg(90) was 1.6e16, sin_deg(180) 1.2e-16
+  for (const char* zero : {"sin_deg(180)", "sin_deg(-360)", "cos_deg(90)", "cos_deg(-270)", "tan_deg(180)"}) EXPECT_EQ(value_of(zero), 0) << zero;
+  for (const char* one : {"sin_deg(90)", "sin_deg(-270)", "cos_deg(360)", "-cos_deg(180)", "-sin_deg(270)", "-sin_deg(-90)"}) EXPECT_EQ(value_of(one), 1) << one;
+  for (const double x : {-400.0, -333.3, -200.0, -135.0, -91.0, -45.0, -1.0, 1.0, 44.0, 45.0, 46.0, 100.0, 135.0, 225.0, 260.0, 315.0, 350.0, 1000.0}) {
+    EXPECT_NEAR(value_of(fmt::format("sin_deg({})", x)), std::sin(x * std::numbers::pi / 180), 4e-15) << x;  // of 1000 degrees, 17 rad, to rounding
+    EXPECT_NEAR(value_of(fmt::format("cos_deg({})", x)), std::cos(x * std::numbers::pi / 180), 4e-15) << x;
+  }
 }
 
 TEST(Expression, NamesTheParametersThatItUses) {
@@ -72,6 +81,8 @@ TEST(Expression, SaysWhatIsWrongWhereItIs) {
                      {"= gamma(5)", 2, "there is no function 'gamma'", functions},
                      {"= sqrt(1, 2)", 2, "sqrt takes one argument, not 2", ""},
                      {"= 1 / zero", 4, "a division by 0", ""},
+                     {"= tan_deg(90)", 2, "tan_deg(90) is no finite number", ""},
+                     {"= tan_deg(-270)", 2, "tan_deg(-270) is no finite number", ""},
                      {"= ln(x)", 2, "ln(-2) is no finite number", ""},
                      {"= 1 + (x)^0.5", 9, "(-2)^(0.5) is no finite number", ""},
                      {"= zero^-1", 6, "(0)^(-1) is no finite number", ""},
