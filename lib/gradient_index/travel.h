@@ -12,7 +12,8 @@
 //
 // Which crossing: that of the tangent, continued. Where the tangent's path to the surface is negative the ray goes back; so a virtual path is integrated
 // like any other. Where the tangent misses, the ray goes forward if it is before the surface. Of several crossings the first on that way is the hit, from the
-// side on which the ray comes; a ray that goes there and back within a quarter of a step, as where it turns, is seen by where it is nearest.
+// side on which the ray comes; a ray that goes there and back within a quarter of a step, as where it turns, is seen by where it is nearest. A surface that is folded
+// more finely than that, as a polynomial far beyond its normalization radius is, may be met at a later crossing than the first.
 //
 // missed         the ray leaves the medium (n is no index any more) or the neighbourhood (a thousand times the distances that there were), without a crossing
 // outside_data   likewise, where it came through a hole or beyond the points of a measured surface

@@ -31,6 +31,7 @@ TEST_P(WildSystems, KeepTheLaws) {
   EXPECT_GE(count("passages in gradients"), 300);
   EXPECT_LE(count("passages in gradients of which nothing is known"), count("passages in gradients") / 20);
   EXPECT_LE(count("given up by one of the two in gradients"), count("passages in gradients") / 50);
+  EXPECT_LE(count("another crossing in gradients"), count("passages in gradients") / 100);
   for (const char* law : {"within its bound, in gradients", "sent back in gradients"}) EXPECT_GE(count(law), 300) << law;
   EXPECT_LE(count("end differently"), count("passages") / 1000);
   EXPECT_LE(count("given up by one of the two"), count("passages") / 10000);
