@@ -234,7 +234,7 @@ class ZemaxReader {
     surface().clip_is_off_centre = to && std::any_of(to->begin(), to->end(), [](Real one) { return one != 0; });
   }
 
-  ZemaxSurface::Grid& grid() { return surface().grid ? *surface().grid : surface().grid.emplace(); }
+  ZemaxGrid& grid() { return surface().grid ? *surface().grid : surface().grid.emplace(); }
   // The numbers of a line of a grid, so many, and the rest 0.
   std::optional<std::vector<Real>> grid_numbers(const Statement& statement, std::size_t count) {
     const std::optional<std::vector<Real>> values = numbers_.list(statement, 1);

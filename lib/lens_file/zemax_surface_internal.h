@@ -18,6 +18,14 @@ struct PlacedNumber {
   Place place;
 };
 
+// The heights that stand in the file.
+struct ZemaxGrid {
+  std::optional<Place> place;              // of GDAT
+  std::vector<Real> layout;                // GDAT nx ny dx dy
+  std::vector<std::array<Real, 4>> nodes;  // GARR n z dz/dx dz/dy d2z/dxdy
+  int first_node = 0;                      // n of the first one, 0 or 1
+};
+
 struct ZemaxSurface {
   Place place;
   std::string type = "STANDARD", comment;
@@ -34,13 +42,7 @@ struct ZemaxSurface {
   };
   std::optional<Clip> clip;
   bool clip_is_off_centre = false;
-  struct Grid {
-    std::optional<Place> place;                // of GDAT
-    std::vector<Real> layout;                  // GDAT nx ny dx dy
-    std::vector<std::array<Real, 4>> nodes;    // GARR n z dz/dx dz/dy d2z/dxdy
-    int first_node = 0;                        // n of the first one, 0 or 1
-  };
-  std::optional<Grid> grid;
+  std::optional<ZemaxGrid> grid;
 
   bool is_coordinate_break() const { return type == "COORDBRK"; }
 };
