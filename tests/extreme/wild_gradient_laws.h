@@ -40,7 +40,8 @@ inline std::optional<double> reversed_in_gradient(const Passage& at) {
   const RoundingBound bound = rounding_bound(view, 0, 1, sent, exact, {at.bound.position, at.bound.turn});
   if (!(bound.position + bound.direction + bound.opl < std::numeric_limits<double>::infinity())) return std::nullopt;
   const double off = norm(back.position(0)), path = std::abs(tracer.behind.opl);
-  if (off > .01 * path || back.n[0] > 0) return std::nullopt;  // another crossing, or from the other side (2026-11-23, seed 22098)
+  // another crossing, one from the other side (2026-11-23, seed 22098), or the other way round a closed path (seed 32186)
+  if (off > .01 * path || back.n[0] > 0 || std::abs(back.opl[0] - tracer.behind.opl) > .01 * path) return std::nullopt;
   const Vec3<double> against{0, 0, -1};
   return std::max({part(numerics::vec3_cast<Exact>(back.position(0)), bound.position), part(normalized(numerics::vec3_cast<Exact>(back.direction(0))) - numerics::vec3_cast<Exact>(against), bound.direction),
                    part(Exact(back.opl[0] - tracer.behind.opl), bound.opl + at.bound.opl)});

@@ -220,6 +220,8 @@ class Examination {
     for (int passed = from + 1; passed <= number; ++passed) carried += norm(scene_.surface(passed).local_from_previous.translation);
     // 2026-11-23, seeds 61044 and 95739: aspheres of power 40 that are met 1e75 mm away, from where nothing is left of where a ray is
     if (64 * unit_roundoff * carried > wild_.scale) return count("end differently after a place whose rounding is larger than the system");
+    // 2026-11-23, seed 41373: a thousand times the distances that there were a ray in a gradient is given up (gradient_index/travel.h), at the end of a step of its own
+    if (scene_.primary.gradient(number - 1) && size_of(exact.crossing.point) > 500 * size_of(exact.start)) return count("left the neighbourhood in gradients");
     const auto bound = rounding_bound(view, from, number, ray, exact);
     double near = 64 * unit_roundoff * carried;
     if (bound.position < std::numeric_limits<double>::infinity()) near = std::max(near, bound.position);
