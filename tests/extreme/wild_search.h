@@ -222,11 +222,13 @@ class Examination {
     if (64 * unit_roundoff * carried > wild_.scale) return count("end differently after a place whose rounding is larger than the system");
     // 2026-11-23, seed 41373: a thousand times the distances that there were a ray in a gradient is given up (gradient_index/travel.h), at the end of a step of its own
     if (scene_.primary.gradient(number - 1) && size_of(exact.crossing.point) > 500 * size_of(exact.start)) return count("left the neighbourhood in gradients");
+    // seed 72825: what is no index is seen at the ends of steps, too
+    if (const double n = static_cast<double>(exact.index_before); scene_.primary.gradient(number - 1) && !gradient_index::is_squared_index(n * n)) return count("no index in gradients");
     const auto bound = rounding_bound(view, from, number, ray, exact);
     double near = 64 * unit_roundoff * carried;
     if (bound.position < std::numeric_limits<double>::infinity()) near = std::max(near, bound.position);
     if (is_at_gradient) near = std::max(near, 1e3 * scene_.tolerance.mm);
-    for (int attempt = 0; attempt < (is_at_gradient ? 8 : 64); ++attempt) {
+    for (int attempt = 0; attempt < (scene_.primary.gradient(number - 1) ? 8 : 64); ++attempt) {
       ExactRay other = ray;
       const auto any = [&](double size) {
         const double x = u_(-size, size), y = u_(-size, size), z = u_(-size, size);
