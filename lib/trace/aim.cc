@@ -164,7 +164,7 @@ std::int64_t Aim::find_samples() {
     for (std::size_t k = 0; k < azimuths; ++k) of_ring[k].place = is_found(inner(k)) ? expected(k) : PupilPoint{nan, nan};
     passes += search(field_, of_ring);
   }
-  // Where nothing is found about the centre, some from the axis.
+  // Where nothing is found about the centre, each from the axis, from the rim inwards, until a ring has some.
   if (std::none_of(samples_.begin(), samples_.end(), [&](const PlaneSearch& one) { return is_found(one); }))
     for (std::size_t ring = rings.size(); ring-- > 0;) {
       for (std::size_t k = 0; k < azimuths; ++k) passes += search_from_axis(samples_[place_of(ring, k)]);
