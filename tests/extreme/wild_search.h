@@ -180,17 +180,6 @@ class Examination {
     if (passed >= 8) count("rays through 8 surfaces or more");
   }
 
-  // Where a ray in a gradient crosses a folded surface several times, steps see it in four places each (gradient_index/travel.h), and the exact ray's steps are other ones:
-  // they may meet different crossings, far apart (2026-11-23, seeds 14133, 28674, 35274, 35678: polynomials far beyond their normalization radius).
-  bool is_another_crossing(const View& view, int number, const ExactStep& exact) const {
-    if (!scene_.primary.gradient(number - 1) || exact.crossing.status != Status::ok) return false;
-    const trace::Ray<double> entering{numerics::vec3_cast<double>(exact.start), numerics::vec3_cast<double>(exact.direction), 0, 0};
-    const auto tracer = trace::step_in_gradient(scene_.surface(number), number, view.wavelength, scene_.tolerance, entering);
-    if (tracer.crossing.status != Status::ok) return false;
-    const Vec3<double> there = numerics::vec3_cast<double>(exact.crossing.point);
-    return norm(tracer.crossing.point - there) > .01 * std::min(norm(tracer.crossing.point - entering.position), norm(there - entering.position));
-  }
-
   void laws(const Passage& at, const trace::RayBatch& start, std::size_t i, const std::string& where) {
     count("at " + kind_of(at));
     hold("within its bound", own_error(at), where);
