@@ -288,6 +288,16 @@ TEST(Travel, WithoutAGradientItIsTheStraightLine) {
 }
 
 // n^2 = 1.96 - z/10, p_z = 1.12 at the start: p_z^2 = 1.2544 - z/10, so the ray turns back at 12.544 mm.
+// It is 10 times as far when it arrives as the distances that there were at its start: r = (0, l t^2/4, n0 t - 1), S = n0^2 t + l^2 t^3/12. The path is 1e2 mm long, its steps' rounding and tolerance 1e-11.
+TEST(Travel, ARayThatIsSweptAsideArrives) {
+  const Quadratic steep{1, {0, 40, 0}, {}};
+  const auto at = arrival(steep, 0, Plane{}, {0, 0, -1}, {0, 0, 1});
+  ASSERT_EQ(at.crossing.status, Status::ok);
+  EXPECT_NEAR(at.state.position.y, 10, 1e-11);
+  EXPECT_NEAR(at.state.opl, 1 + 1600.0 / 12, 1e-10);
+  EXPECT_NEAR(at.state.optical_direction.z, 1, 1e-12);
+}
+
 TEST(Travel, ARayThatTurnsBackBeforeTheSurfaceMissesIt) {
   const Quadratic falling{1.4, {0, 0, -0.1}, {}};
   for (const double length : {12.4, 12.5, 12.54, 12.5439, 12.543999, 12.5439999}) {

@@ -154,6 +154,20 @@ TEST(Gradient, TheMediumMovesWithItsSurface) {
   EXPECT_GT(std::abs(tilt.row_x.y), 0.1);
 }
 
+// The pull of a medium is turned into the frame of the surface that ends it: before a tilted plane the ray is the parabola r = r0 + p0 t + l t^2/4 that it is in the
+// medium's own frame, with n^2 = n0^2 + l.r along it. 1e-12 mm: the tolerance of the few steps that there are.
+TEST(Gradient, ARayBeforeATiltedPlaneIsAParabola) {
+  const Vec3<double> l{0.4, -0.3, 0};
+  const CompiledScene tilted = scene_of("  - {stop: true, thickness_mm: 4, medium: {grin: {quadratic: {index: 1.5, x_per_mm: 0.4, y_per_mm: -0.3}}}}\n  - {tilt_deg: [20, -15, 30]}\n");
+  const Vec3<double> start{0.2, 0.5, 0};
+  const double n2 = 1.5 * 1.5 + dot(l, start);
+  const GlobalRay end = traced(tilted, {start, {0, 0, 1}});
+  const double t = end.p.z / std::sqrt(n2);  // l has no z
+  EXPECT_LE(norm(end.p - (start + Vec3<double>{0, 0, end.p.z} + t * t / 4 * l)), 1e-12);
+  EXPECT_LE(norm(end.d - numerics::normalized(Vec3<double>{t / 2 * l.x, t / 2 * l.y, std::sqrt(n2)})), 1e-12);
+  EXPECT_GT(t * t / 4 * norm(l), 0.5);
+}
+
 // A plane in the middle with the rest of the medium behind it is nothing.
 TEST(Gradient, APlaneWithinAMediumChangesNothing) {
   const CompiledScene one = scene_of("  - {stop: true, thickness_mm: 6, medium: {grin: {luneburg: {radius_mm: 5, center_z_mm: 3}}}}\n  - {thickness_mm: 1}\n  - {}\n");
@@ -193,6 +207,26 @@ TEST(Gradient, ARayThatComesToAMediumWhereItHasNoIndexMissesIt) {
   EXPECT_EQ(rays.ended_at(0), 1);
   EXPECT_EQ(rays.position(0), (Vec3<double>{0, 3.4, -1}));  // its last good place
   EXPECT_EQ(rays.status(1), Status::ok);
+}
+
+// At the rim of Luneburg's lens the index is that of what is around it, but for the rounding of where the ray meets it: nothing is refracted, to the last bit, however
+// nearly the ray grazes.
+TEST(Gradient, WhereTheIndexIsThatOfWhatIsAroundItNothingIsRefracted) {
+  const CompiledScene ball = scene_of("  - {stop: true, thickness_mm: 1, medium: {index: 1.3}}\n"
+                                      "  - {conic: {radius_mm: 7.3}, thickness_mm: 1, medium: {grin: {luneburg: {index: 1.3, radius_mm: 7.3, center_z_mm: 7.3}}}}\n  - {}\n");
+  std::vector<GlobalRay> given;
+  for (int i = 0; i < 100; ++i) {
+    const double h = 7.3 * (1 - std::pow(10.0, -0.1 * i)), azimuth = i;
+    given.push_back({{h * std::cos(azimuth), h * std::sin(azimuth), -3}, {0, 0, 1}});
+  }
+  RayBatch rays = batch_of(given);
+  trace_surface(ball.scene, ball.scene.primary, 1, rays);
+  const RayBatch arriving = rays;
+  trace_surface(ball.scene, ball.scene.primary, 2, rays);
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    ASSERT_EQ(rays.status(i), Status::ok) << i;
+    EXPECT_EQ(rays.direction(i), arriving.direction(i)) << i;
+  }
 }
 
 TEST(Gradient, AnImageThatEndsAGradientHasASpotButNoWavefront) {
