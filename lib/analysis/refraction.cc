@@ -85,29 +85,36 @@ std::optional<Power> over_entrance_pupil(const trace::Launcher& launcher, double
 }
 
 constexpr double pupil_step = .05;  // h of (5) and of the differences of (6), of the pupil's radius
+constexpr int passes = 3;           // of (5): each leaves some H^2 of what there is between the pupils, 1e-2 of an H of 10 D at first
 
-// (5), along 0, 45, 90 and 135 degrees.
-std::optional<Power> by_curvature(const scene::Scene& scene, const scene::Wavelength& wavelength, const scene::Field& field, const trace::PupilPoint& chief,
-                                  const ReferenceSphere<double>& sphere) {
-  std::vector<trace::PupilPoint> points;
-  for (int eighth = 0; eighth < 8; ++eighth) {
-    const double at = eighth * std::numbers::pi / 4;
-    for (const double h : {pupil_step, 2 * pupil_step}) points.push_back({chief.x + h * std::cos(at), chief.y + h * std::sin(at)});
+// (1) by (5), along 0, 45, 90 and 135 degrees, at the entrance pupil and in the tracer's frame.
+std::optional<Power> by_curvature(const scene::Scene& scene, const scene::Wavelength& wavelength, const LineOfSight& line, const ReferenceSphere<double>& sphere) {
+  const double index = wavelength.index.front(), step = pupil_step * scene.pupil.semi_diameter;
+  Power arriving{1e3 * line.vergence, 0, 1e3 * line.vergence};
+  for (int pass = 0; pass < passes; ++pass) {
+    RayBatch rays(17);
+    const auto set = [&](std::size_t i, double pu, double pv) {
+      const double su = 1e-3 * (arriving.uu * pu + arriving.uv * pv), sv = 1e-3 * (arriving.uv * pu + arriving.vv * pv);  // V p
+      rays.set(i, line.centre + pu * line.u + pv * line.v, normalized(line.d - su / index * line.u - sv / index * line.v), -(pu * su + pv * sv) / 2);
+    };
+    for (std::size_t i = 0; i < 16; ++i) {
+      const double at = static_cast<double>(i / 2) * std::numbers::pi / 4, h = i % 2 == 0 ? step : 2 * step;
+      set(i, h * std::cos(at), h * std::sin(at));
+    }
+    set(16, 0, 0);
+    trace::trace(scene, wavelength, rays);
+    std::array<double, 17> W;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (rays.ended[i] != 0) return std::nullopt;
+      W[i] = optical_path_difference(sphere, rays.position(i), rays.direction(i), rays.opl[i]);
+    }
+    const auto along = [&](std::size_t eighth) {
+      const auto even = [&](std::size_t k) { return (W[2 * eighth + k] + W[2 * (eighth + 4) + k]) / 2 - W[16]; };
+      return 1e3 * (16 * even(0) - even(1)) / (6 * step * step);
+    };
+    arriving = {arriving.uu - along(0), arriving.uv - (along(1) - along(3)) / 2, arriving.vv - along(2)};
   }
-  points.push_back(chief);
-  RayBatch rays = launch(scene, field, wavelength.index.front(), points);  // in the entrance pupil
-  trace::trace(scene, wavelength, rays);
-  std::vector<double> W;
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (rays.ended[i] != 0) return std::nullopt;
-    W.push_back(optical_path_difference(sphere, rays.position(i), rays.direction(i), rays.opl[i]));
-  }
-  const double step = pupil_step * scene.pupil.semi_diameter;
-  const auto along = [&](std::size_t eighth) {
-    const auto even = [&](std::size_t k) { return (W[2 * eighth + k] + W[2 * (eighth + 4) + k]) / 2 - W.back(); };
-    return 1e3 * (16 * even(0) - even(1)) / (6 * step * step);
-  };
-  return Power{along(0), (along(1) - along(3)) / 2, along(2)};
+  return arriving;
 }
 
 // (6), at the entrance pupil and in the tracer's frame. Central differences of first and third order in the step.
@@ -170,7 +177,7 @@ RefractionResult refraction(const scene::Scene& scene, const scene::Wavelength& 
   const trace::Launcher launcher(scene, field, wavelength);
   const trace::PupilPoint chief = launcher.at_entrance_pupil(std::vector<trace::PupilPoint>{{0, 0}}).points.front();
   const LineOfSight line = line_of_sight(scene, field, chief, index);
-  const auto curvature = by_curvature(scene, wavelength, field, chief, reference.sphere);
+  const auto curvature = by_curvature(scene, wavelength, line, reference.sphere);
   const auto far_point = by_far_point(scene, wavelength, line);
   if (!curvature || !far_point) return {{}, "a ray near the chief ray is lost"};
 
@@ -179,7 +186,7 @@ RefractionResult refraction(const scene::Scene& scene, const scene::Wavelength& 
     const Power there = moved(at_pupil, a, index);
     return Power{there.uu, -there.uv, there.vv};  // OSA's frame
   };
-  Refraction result{{}, {}, reported(wanted(line, across(line, *curvature))), reported(*far_point)};
+  Refraction result{{}, {}, reported(*curvature), reported(*far_point)};
   WavefrontRequest for_fit = request.wavefront;
   for_fit.indexing = numerics::ZernikeIndexing::osa;
   const WavefrontResult measured = wavefront(scene, wavelength, field, for_fit);
