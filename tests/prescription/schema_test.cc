@@ -161,7 +161,7 @@ TEST(Schema, TakesTheValuesThatTheReaderTakes) {
       // Those that stand there already, and what depends on other files.
       const bool is_there = key.name == "sagitta" || key.name == "wavelengths_nm" || key.name == "aperture" || key.name == "surfaces" || key.name == "thickness_mm" || key.name == "stop" || (level == "surface" && key.name == "name");
       if (is_there || key.kind == ValueKind::file || key.name == "parameters" || !key.choices.empty()) continue;
-      for (const char* value : {"text", "-1", "0", "0.5", "1.5", "2", ".inf", "-.inf", "1e99", "1e101", "-1e120", "1e-101", "[1]", "[1, 2, 3]", "[[1, 2]]", "[1, [2]]", "{a: 1}", "{3: 1}", "true", "'= 2'", "''"}) {
+      for (const char* value : {"text", "-1", "0", "0.5", "1.5", "2", ".inf", "-.inf", "1e101", "-1e120", "1e-101", "[1]", "[1, 2, 3]", "[[1, 2]]", "[1, [2]]", "{a: 1}", "{3: 1}", "true", "'= 2'", "''"}) {
         if ((key.kind == ValueKind::medium || key.kind == ValueKind::homogeneous_medium) && std::string_view(value) != "0.5" && value[0] != '[') continue;
         if (std::string_view(value) == "'= 2'" && !key.range.contains(2)) continue;  // nor work out
         const std::string name = fmt::format("{}.yaml", ++count), text = around(level, fmt::format("{}: {}", key.name, value));
