@@ -26,7 +26,7 @@ int import_command(const ImportOptions& options) {
   if (overwrites("import", "-o " + options.file, options.lens, {options.file}, "the lens file")) return 2;
   const lens_file::Imported imported = lens_file::import({options.lens, options.file, options.catalogs, options.takes_parts});
   if (!report(imported.findings) || !imported.prescription) {
-    if (!options.takes_parts) fmt::print(stderr, "sagitta import: {} is not written; --partial leaves out what is only not understood\n", options.file);
+    fmt::print(stderr, "sagitta import: {} is not written{}\n", options.file, imported.could_be_left_out ? "; --partial leaves out what is only not understood" : "");
     return 1;
   }
   for (const auto& [path, text] : imported.files)

@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "lib/prescription/check.h"
 #include "lib/prescription/reader.h"
 #include "tools/solve_fields.h"
 
@@ -41,11 +42,16 @@ std::optional<scene::CompileResult> load_scene(const prescription::Model& model,
 }
 
 bool set_wavelengths(prescription::Model& model, const std::vector<double>& wavelengths_nm, const std::string& who) {
-  std::set<std::string> told;
+  std::set<std::string> told, extrapolated;
+  const std::set<double> known(model.wavelengths_nm.begin(), model.wavelengths_nm.end());  // of which the reader has spoken
   const auto check = [&](const medium::Medium& medium) {
-    std::vector<double> beyond;
-    for (const double nm : wavelengths_nm)
+    std::vector<double> beyond, added;
+    for (const double nm : wavelengths_nm) {
       if (!medium.covers(nm / 1000)) beyond.push_back(nm);
+      if (!known.contains(nm)) added.push_back(nm);
+    }
+    if (const std::string one = prescription::told_extrapolation(medium, added); !one.empty() && extrapolated.insert(medium.name).second)
+      fmt::print(stderr, "sagitta {}: warning: {}\n", who, one);
     if (beyond.empty() || !told.insert(medium.name).second) return;
     fmt::print(stderr, "sagitta {}: {:g} nm{} outside the range of {}, {:g} to {:g} nm\n", who, beyond.front(), beyond.size() == 1 ? " lies" : fmt::format(" and {} more lie", beyond.size() - 1),
                medium.name, medium.shortest_um * 1e3, medium.longest_um * 1e3);

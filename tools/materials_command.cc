@@ -35,6 +35,7 @@ output::MediumReport report_of(const Material& material) {
   output::MediumReport report;
   report.name = material.name;
   report.kind = material.dispersion->kind();
+  report.is_table = !material.dispersion->measured_um().empty();
   report.comments = material.comments;
   report.references = material.references;
   report.file = place.line > 0 ? fmt::format("{}:{}", place.file, place.line) : place.file;
@@ -100,6 +101,8 @@ std::pair<double, double> plotted_range_um(const std::vector<Material>& material
 std::vector<output::ChartPoint> curve_of(const medium::Medium& medium, double shortest_um, double longest_um) {
   constexpr int steps = 600;  // about the plot's width in pixels
   std::vector<output::ChartPoint> curve;
+  for (const double um : medium.dispersion->measured_um()) curve.push_back({um * 1000, medium.index(um)});
+  if (!curve.empty()) return curve;
   for (int i = 0; i <= steps; ++i) {
     const double um = shortest_um + (longest_um - shortest_um) * i / steps;
     curve.push_back({um * 1000, medium.index(um)});

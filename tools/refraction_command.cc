@@ -40,6 +40,12 @@ std::optional<std::vector<double>> parse_spectrum(const std::string& text) {
   return result;
 }
 
+// The vitreous of every eye has an index above 1.3; that of a lens' image is air, as of its object.
+bool is_eye(const prescription::Model& model, const scene::Scene& scene) {
+  constexpr double least_index = 1.1;
+  return !model.eye.empty() || !(scene.primary.index[scene.surfaces.size() - 1] < least_index);  // a gradient has NaN
+}
+
 }  // namespace
 
 int refraction_command(const RefractionOptions& options) {
@@ -55,7 +61,7 @@ int refraction_command(const RefractionOptions& options) {
   const auto compiled = load_scene(*model);
   if (!compiled) return 1;
   const scene::Scene& scene = *compiled->scene;
-  output::RefractionReport report{make_report(*model, *compiled), options.vertex_distance_mm, {}};
+  output::RefractionReport report{make_report(*model, *compiled), options.vertex_distance_mm, is_eye(*model, scene), {}};
   report.results.resize(scene.fields.size() * scene.wavelengths.size());
   numerics::share_blocks(report.results.size(), options.thread_count, [&] {
     return [&](std::size_t i) {

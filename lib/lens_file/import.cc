@@ -108,6 +108,7 @@ Imported import(const ImportRequest& request) {
     result.surface_count = static_cast<int>(lens->surfaces.size());
   }
   result.left_out_count = report.left_out_count();
+  result.could_be_left_out = report.could_be_left_out();
   result.findings = in_order(result.findings, request.file);
   return result;
 }

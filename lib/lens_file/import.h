@@ -27,6 +27,7 @@ struct Imported {
   std::vector<DataFile> files;              // of the data that it names
   prescription::Findings findings;          // in the order of the lines of the file
   int surface_count = 0, left_out_count = 0;
+  bool could_be_left_out = false;           // there is an error that takes_parts would make a warning
 };
 
 Imported import(const ImportRequest& request);

@@ -40,9 +40,8 @@ std::optional<Lens> read_lens(const std::string& file, Report& report) {
     report.broken({file}, "the ending of its name is that of no lens file", "known are " + lens_file_formats());
     return std::nullopt;
   }
-  const std::optional<std::string> bytes = prescription::read_file(file, most_lens_file_bytes, "a lens of 1000 surfaces takes less", report.findings());
-  if (!bytes) return std::nullopt;
-  return format->read(file, prescription::utf8_text(*bytes), report);
+  const std::optional<std::string> text = prescription::read_text_file(file, most_lens_file_bytes, "a lens of 1000 surfaces takes less", report.findings());
+  return text ? format->read(file, *text, report) : std::nullopt;
 }
 
 }  // namespace sagitta::lens_file

@@ -20,7 +20,10 @@ class Report {
   }
   // `what` is a clause without a full stop.
   void left_out(Place place, std::string what, std::string hint = {}) {
-    if (!takes_parts_) return broken(std::move(place), std::move(what), std::move(hint));
+    if (!takes_parts_) {
+      could_be_left_out_ = true;
+      return broken(std::move(place), std::move(what), std::move(hint));
+    }
     ++left_out_count_;
     if (left_out_.size() >= prescription::most_told_errors) return;
     left_out_.push_back({place, what});
@@ -30,6 +33,8 @@ class Report {
   void note(Place place, std::string what) { findings_.note(std::move(place), std::move(what)); }
 
   bool has_errors() const { return findings_.has_errors(); }
+  // Whether there is an error that would be a warning where a part of the lens is good enough.
+  bool could_be_left_out() const { return could_be_left_out_; }
   prescription::Findings& findings() { return findings_; }
 
   struct LeftOut {
@@ -41,7 +46,7 @@ class Report {
 
  private:
   prescription::Findings& findings_;
-  bool takes_parts_;
+  bool takes_parts_, could_be_left_out_ = false;
   std::vector<LeftOut> left_out_;
   int left_out_count_ = 0;
 };

@@ -20,6 +20,7 @@ class TwoTermCauchy : public Dispersion {
   double index(double wavelength_um) const override {
     return index_d_ + slope_um2_ * (1 / (wavelength_um * wavelength_um) - 1 / (lines::d_um * lines::d_um));
   }
+  bool is_meant_for_visible_light() const override { return true; }
   std::string kind() const override { return "from nd and Vd"; }
 
  private:

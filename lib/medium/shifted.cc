@@ -15,6 +15,7 @@ class Shifted : public Dispersion {
   double index(double wavelength_um) const override { return index_ + (other_.index(wavelength_um) - at_reference_); }
   bool is_constant() const override { return other_.dispersion->is_constant(); }
   bool is_smooth() const override { return other_.dispersion->is_smooth(); }
+  bool is_meant_for_visible_light() const override { return other_.dispersion->is_meant_for_visible_light(); }
   std::string kind() const override { return other_.dispersion->kind() + ", shifted"; }
 
  private:

@@ -22,6 +22,11 @@ class Table : public Dispersion {
     return (1 - t) * low.index + t * after->index;  // (1)
   }
   bool is_smooth() const override { return false; }
+  std::vector<double> measured_um() const override {
+    std::vector<double> wavelengths;
+    for (const Sample& sample : samples_) wavelengths.push_back(sample.wavelength_um);
+    return wavelengths;
+  }
   std::string kind() const override { return "table of " + std::to_string(samples_.size()); }
 
  private:

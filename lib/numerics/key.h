@@ -19,7 +19,8 @@ enum class ValueKind {
   file,      // the name of a file
   vector3,   // [x, y, z]
   indexed,   // {index: value, ...} or a list that counts from the first index
-  medium,    // a name or {index: ...} or {nd: ..., vd: ...}
+  medium,    // a name or {index: ...} or {nd: ..., vd: ...} or {grin: ...} or mirror
+  homogeneous_medium,  // of these neither a gradient nor a mirror
   mapping,   // has a table of keys of its own
   list       // a list with a checker of its own
 };

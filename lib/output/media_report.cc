@@ -90,17 +90,21 @@ Chart media_chart(const std::vector<MediumReport>& media, const std::vector<std:
   chart.x_label = "wavelength (nm)";
   chart.y_label = "refractive index";
   chart.x_scale = chart.y_scale = AxisScale::linear;
-  bool any_is_asked_for = false;
+  bool any_is_asked_for = false, any_is_measured = false;
   for (std::size_t i = 0; i < media.size(); ++i) {
     ChartSeries series{media[i].name, {}, true, {}, curves[i]};
     for (const MediumValue& value : media[i].values)
       if (value.line.empty()) series.points.push_back({value.wavelength_nm, value.index});
     any_is_asked_for = any_is_asked_for || !series.points.empty();
+    if (series.points.empty() && media[i].is_table) {
+      series.points = curves[i];
+      any_is_measured = true;
+    }
     if (series.points.empty())  // a few along the curve, by which to tell it from others
       for (std::size_t k = 1; k < 12; k += 2) series.points.push_back(curves[i][k * (curves[i].size() - 1) / 12]);
     chart.series.push_back(std::move(series));
   }
-  chart.footer = fmt::format("{}sagitta {}", any_is_asked_for ? "markers: the wavelengths asked for; " : "", version);
+  chart.footer = fmt::format("{}sagitta {}", any_is_asked_for ? "markers: the wavelengths asked for; " : any_is_measured ? "markers of tables: the measured wavelengths; " : "", version);
   return chart;
 }
 

@@ -19,9 +19,11 @@ using analysis::Power;
 using nlohmann::ordered_json;
 
 std::string plane_of(const RefractionReport& report) {
-  return report.vertex_distance_mm == 0 ? std::string("the cornea's vertex plane") : fmt::format("the spectacle plane {:g} mm before the cornea", report.vertex_distance_mm);
+  if (report.vertex_distance_mm == 0) return report.is_eye ? "the cornea's vertex plane" : "the vertex plane of surface 1";
+  return fmt::format("the {}plane {:g} mm before {}", report.is_eye ? "spectacle " : "", report.vertex_distance_mm, report.is_eye ? "the cornea" : "surface 1");
 }
 std::string eye_of(const RefractionReport& report) {
+  if (!report.is_eye) return "no eye, for its image is in air: the image surface is taken for the retina";
   return report.system.eye.empty() ? "which eye is not said (`eye: right` or `left` in the prescription)" : report.system.eye + " eye";
 }
 constexpr const char* frame = "OSA axes: x to the examiner's right, y up, the axis anticlockwise from x";
@@ -124,6 +126,7 @@ std::string refraction_json(const RefractionReport& report) {
   ordered_json json{{"system", system.system},
                     {"version", system.version},
                     {"eye", system.eye.empty() ? ordered_json(nullptr) : ordered_json(system.eye)},
+                    {"is_eye", report.is_eye},
                     {"frame", frame},
                     {"vertex_distance_mm", report.vertex_distance_mm},
                     {"entrance_pupil_semi_diameter_mm", system.first_order.entrance_pupil.semi_diameter},

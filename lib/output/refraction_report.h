@@ -14,6 +14,7 @@ namespace sagitta::output {
 struct RefractionReport {
   Report system;  // without results
   double vertex_distance_mm = 0;
+  bool is_eye = true;  // false: the image is in air, and is taken for a retina
   std::vector<analysis::RefractionResult> results;  // by field, then wavelength
 };
 

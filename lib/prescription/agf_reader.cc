@@ -262,8 +262,8 @@ const AgfGlass* AgfCatalog::find(const std::string& name) const {
 }
 
 std::optional<AgfCatalog> read_agf(const std::string& file, Findings& findings) {
-  const std::optional<std::string> bytes = read_file(file, most_agf_bytes, "split the catalogue", findings);
-  return bytes ? CatalogFile(file, findings).read(utf8_text(*bytes)) : std::nullopt;
+  const std::optional<std::string> text = read_text_file(file, most_agf_bytes, "split the catalogue", findings);
+  return text ? CatalogFile(file, findings).read(*text) : std::nullopt;
 }
 
 std::optional<Material> read_glass(const AgfCatalog& catalog, const AgfGlass& glass, Findings& findings) { return GlassReader(catalog, glass, findings).read(); }

@@ -14,7 +14,6 @@
 namespace sagitta::prescription {
 namespace {
 
-constexpr std::size_t most_parameters = 100;
 constexpr const char* parameters_key = "parameters";
 
 std::vector<std::string> names_of(const std::vector<ParameterValue>& parameters) {
@@ -25,7 +24,7 @@ std::vector<std::string> names_of(const std::vector<ParameterValue>& parameters)
 
 std::vector<ParameterValue> read_parameters(const YamlNode& node, Findings& findings) {
   std::vector<ParameterValue> parameters;
-  if (node.kind != YamlNode::Kind::mapping || node.entries.size() > most_parameters) {
+  if (node.kind != YamlNode::Kind::mapping || node.entries.size() > std::size_t{most_parameters}) {
     refuse(node, parameters_key, fmt::format("a mapping {{NAME: VALUE, ...}} of at most {}", most_parameters), findings);
     return parameters;
   }

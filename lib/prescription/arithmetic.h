@@ -19,6 +19,8 @@
 
 namespace sagitta::prescription {
 
+inline constexpr int most_parameters = 100;
+
 // Values of parameters in place of those that the prescription declares.
 using Settings = std::vector<ParameterValue>;
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <string>
 
 namespace sagitta::prescription {
@@ -63,9 +64,22 @@ void check_medium(const MediumUse& use, const std::vector<double>& wavelengths_n
                    fmt::format("{} has no index from {} to {} at {}", use.medium.name, medium::least_index, medium::largest_index, shown(without_index)));
 }
 
+std::string told_extrapolation(const medium::Medium& medium, const std::vector<double>& wavelengths_nm) {
+  std::vector<double> beyond;
+  for (const double wavelength_nm : wavelengths_nm)
+    if (medium.is_extrapolated(wavelength_nm / 1000)) beyond.push_back(wavelength_nm);
+  if (beyond.empty()) return {};
+  return fmt::format("{} is meant for visible light, {:g} to {:g} nm, and extrapolated at {}", medium.name, medium::shortest_visible_um * 1000, medium::longest_visible_um * 1000, shown(beyond));
+}
+
 void check_model(const Model& model, const std::vector<MediumUse>& media, Findings& findings) {
   const std::vector<double> wavelengths_nm = used_wavelengths_nm(model);
-  for (const MediumUse& use : media) check_medium(use, wavelengths_nm, findings);
+  std::set<std::string> extrapolated;
+  for (const MediumUse& use : media) {
+    check_medium(use, wavelengths_nm, findings);
+    if (const std::string told = told_extrapolation(use.medium, wavelengths_nm); !told.empty() && extrapolated.insert(use.medium.name).second)
+      findings.warning(use.place, told, "a file of materials/ or a glass of a catalogue has a range");
+  }
   check_aperture(model, findings);
   if (model.fields.kind == FieldKind::object_heights_mm && std::isinf(model.object.distance_mm))
     findings.error(model.fields.place, "object_heights_mm needs a finite object",

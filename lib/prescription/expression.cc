@@ -68,8 +68,7 @@ bool goes_on(char c) { return is_letter(c) || is_digit(c) || c == '_'; }
 std::string function_hint(const std::string& name) {
   if (name == "log") return "the natural logarithm is ln";
   if (name == "sin" || name == "cos" || name == "tan") return fmt::format("write {}_deg: angles are in degrees", name);
-  std::vector<std::string> names;
-  for (const Function& one : functions) names.emplace_back(one.name);
+  const std::vector<std::string> names = function_names();
   const std::string meant = nearest_name(name, names);
   return meant.empty() ? "the functions are: " + listed(names) : fmt::format("did you mean '{}'?", meant);
 }
@@ -173,7 +172,7 @@ class Reader {
 
   double refuse_open(std::size_t at) {
     if (next() != '\0') return refuse_next();
-    return refuse(at, "this '(' has no ')'", "in a line of [ ] or { } an expression with a comma needs quotes");
+    return refuse(at, "this '(' has no ')'", hint_of_open_parenthesis);
   }
 
   double number() {
@@ -232,6 +231,12 @@ class Reader {
 
 Evaluation evaluate(std::string_view text, const std::vector<ParameterValue>& parameters, bool look_for_hints) {
   return Reader(text, parameters, look_for_hints).whole();
+}
+
+std::vector<std::string> function_names() {
+  std::vector<std::string> names;
+  for (const Function& one : functions) names.emplace_back(one.name);
+  return names;
 }
 
 bool is_parameter_name(std::string_view name) {

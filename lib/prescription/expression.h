@@ -41,6 +41,11 @@ struct Evaluation {
 // `text` begins with '='. Names that are unknown are looked for among the parameters, for a hint, if `look_for_hints`.
 Evaluation evaluate(std::string_view text, const std::vector<ParameterValue>& parameters, bool look_for_hints = true);
 
+// What to do where an expression ends before its ')'.
+inline constexpr const char* hint_of_open_parenthesis = "quote the expression: in a line of [ ] or { } one with a comma needs quotes";
+
+std::vector<std::string> function_names();
+
 // A letter, then letters, digits and _, 64 at most; no function's name.
 bool is_parameter_name(std::string_view name);
 

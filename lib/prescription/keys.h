@@ -124,7 +124,7 @@ inline constexpr std::array object_keys{
                   .range = {.low = std::numeric_limits<double>::lowest(), .zero = false, .infinite = true},
                   .fallback = std::numeric_limits<double>::infinity()},
     numerics::Key{
-        .name = "medium", .kind = numerics::ValueKind::medium, .meaning = "medium of the object; air unless given"}};
+        .name = "medium", .kind = numerics::ValueKind::homogeneous_medium, .meaning = "medium of the object; air unless given"}};
 
 // The keys of every surface; exactly one shape may stand beside them (none: a plane).
 inline constexpr std::array surface_keys{
@@ -153,7 +153,7 @@ inline constexpr numerics::Range index_range{.low = medium::least_index, .high =
 
 // Beside an index: how it changes with the wavelength. Both or none.
 inline constexpr numerics::Key dispersion_key{.name = "dispersion",
-                                              .kind = numerics::ValueKind::medium,
+                                              .kind = numerics::ValueKind::homogeneous_medium,
                                               .meaning = "a medium with whose index this one rises and falls; unless given it is the same at every wavelength"};
 inline constexpr numerics::Key reference_key{.name = "reference_nm", .meaning = "the wavelength of the index", .range = wavelengths_nm_range};
 

@@ -62,6 +62,7 @@ void read_value(const Section& section, const Key& key, Parameters& parameters) 
       break;
     case ValueKind::vector3:
     case ValueKind::medium:
+    case ValueKind::homogeneous_medium:
     case ValueKind::mapping:
     case ValueKind::list:
       break;  // no shape has such a key; Parameters could not hold it

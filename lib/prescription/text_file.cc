@@ -13,6 +13,7 @@ namespace sagitta::prescription {
 namespace {
 
 constexpr char32_t no_character = 0xFFFD;
+constexpr std::string_view low_end_first_mark = "\xFF\xFE", high_end_first_mark = "\xFE\xFF";
 
 void append(std::string& text, char32_t code) {
   const auto put = [&](char32_t byte) { text += static_cast<char>(static_cast<unsigned char>(byte)); };
@@ -90,10 +91,20 @@ std::optional<std::string> read_file(const std::string& file, std::size_t most_b
   return bytes;
 }
 
+bool has_utf_16_mark(std::string_view bytes) { return bytes.starts_with(low_end_first_mark) || bytes.starts_with(high_end_first_mark); }
+
+bool is_utf_16_without_mark(std::string_view bytes) {
+  constexpr std::size_t looked_at = 1000;
+  const std::size_t units = std::min(bytes.size(), looked_at) / 2;
+  std::size_t zeros[2] = {0, 0};  // of the first and the second bytes
+  for (std::size_t i = 0; i < 2 * units; ++i) zeros[i % 2] += bytes[i] == '\0';
+  const auto [none, most] = std::minmax(zeros[0], zeros[1]);
+  return !has_utf_16_mark(bytes) && most > 0 && 2 * most >= units && 8 * none <= most;
+}
+
 std::string utf8_text(const std::string& bytes) {
   const std::string_view all = bytes;
-  if (all.starts_with("\xFF\xFE")) return from_utf_16(all.substr(2), true);
-  if (all.starts_with("\xFE\xFF")) return from_utf_16(all.substr(2), false);
+  if (has_utf_16_mark(all)) return from_utf_16(all.substr(2), all.starts_with(low_end_first_mark));
   const bool has_mark = all.starts_with("\xEF\xBB\xBF");
   const std::string_view content = has_mark ? all.substr(3) : all;
   if (is_utf_8(content)) return std::string(content);
@@ -111,6 +122,14 @@ std::string utf8_text(const std::string& bytes) {
     rest.remove_prefix(std::max<std::size_t>(length, 1));
   }
   return text;
+}
+
+std::optional<std::string> read_text_file(const std::string& file, std::size_t most_bytes, const std::string& hint, Findings& findings) {
+  const std::optional<std::string> bytes = read_file(file, most_bytes, hint, findings);
+  if (!bytes) return std::nullopt;
+  if (!is_utf_16_without_mark(*bytes)) return utf8_text(*bytes);
+  findings.error({file}, "UTF-16 without a byte order mark", "save the file as UTF-8, or as UTF-16 with a byte order mark");
+  return std::nullopt;
 }
 
 }  // namespace sagitta::prescription

@@ -10,6 +10,8 @@
 #include <limits>
 #include <map>
 
+#include "lib/prescription/expression.h"
+
 namespace sagitta::prescription {
 namespace {
 
@@ -67,6 +69,11 @@ std::string number_hint(const YamlNode& node) {
   return fmt::format("write {}: units stand in the names of keys, not with the numbers", excerpt(text.substr(0, end)));
 }
 
+// `[=min(a, 2), 0]` is a list of three: the comma within the parentheses parts its items.
+bool is_cut_expression(const YamlNode& node) {
+  return node.text.starts_with('=') && std::count(node.text.begin(), node.text.end(), '(') > std::count(node.text.begin(), node.text.end(), ')');
+}
+
 std::vector<std::string> names_of(KeyTable keys) {
   std::vector<std::string> names;
   for (const numerics::Key& key : keys) names.emplace_back(key.name);
@@ -87,6 +94,7 @@ bool is_plain(const YamlNode& node) { return node.kind == YamlNode::Kind::scalar
 
 std::optional<int> parse_index(const std::string& text) {
   int index = 0;
+  if (text.starts_with('-')) return std::nullopt;  // -0
   const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), index);
   return status == std::errc{} && end == text.data() + text.size() ? std::optional(index) : std::nullopt;
 }
@@ -160,7 +168,8 @@ std::optional<std::vector<double>> read_tuple(const YamlNode& node, const std::s
                                               std::string_view components, const numerics::Range& range,
                                               Findings& findings) {
   if (node.kind != YamlNode::Kind::sequence || node.items.size() != components.size()) {
-    refuse(node, label, fmt::format("a list [{}]", fmt::join(components, ", ")), findings);
+    const bool is_cut = std::any_of(node.items.begin(), node.items.end(), [](const YamlNode::Pointer& item) { return is_cut_expression(*item); });
+    findings.error(node.place, fmt::format("{} must be a list [{}], not {}", label, fmt::join(components, ", "), shown(node)), is_cut ? hint_of_open_parenthesis : "");
     return std::nullopt;
   }
   std::vector<double> values;

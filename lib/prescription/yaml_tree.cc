@@ -203,6 +203,10 @@ std::string hint_of(const YAML::Exception& fault) {
 
 // YAML admits no control characters but tab and the line ends; yaml-cpp would stop at some of them in silence.
 bool is_plain_text(const std::string& file, const std::string& text, Findings& findings) {
+  if (has_utf_16_mark(text) || is_utf_16_without_mark(text)) {
+    findings.error({file}, "UTF-16, which is not read here", "save the file as UTF-8");
+    return false;
+  }
   int line = 1;
   std::size_t line_start = 0;
   for (std::size_t i = 0; i < text.size();) {

@@ -270,6 +270,19 @@ TEST(ImportCommand, refuses_what_it_does_not_understand_unless_a_part_is_enough)
   EXPECT_THAT(read_text(to), HasSubstr("# Left out of that file, by line:\n#   12: VUY: vignetting factors\n"));
 }
 
+TEST(ImportCommand, speaks_of_partial_only_where_that_helps) {
+  const Folder folder;
+  const std::string to = folder.path("lens.yaml"), missing = folder.path("none.zmx"), no_surfaces = folder.file("broken.zmx", "VERS 1\nMODE SEQ\n");
+  const std::string written = "sagitta import: " + to + " is not written\n";
+  for (const char* partial : {"", " --partial"}) {
+    EXPECT_EQ(run_program("import " + missing + " -o " + to + partial).err, missing + ":1:1: error: there is no such file\n" + written);
+    const Outcome broken = run_program("import " + no_surfaces + " -o " + to + partial);
+    EXPECT_EQ(broken.status, 1);
+    EXPECT_THAT(broken.err, HasSubstr("error: "));
+    EXPECT_THAT(broken.err, ::testing::EndsWith("\n" + written));
+  }
+}
+
 TEST(ImportCommand, looks_for_glasses_in_catalogues) {
   const Folder folder;
   const std::string agf = folder.file("maker.agf", "CC a maker\nNM MY-GLASS 2 0 1.5 60 0 1\nCD 1.25 0 0 0 0 0\nLD 0.3 2.5\n");

@@ -105,6 +105,18 @@ TEST(Parameters, a_setting_that_means_nothing_is_wrong_usage) {
   EXPECT_EQ(run_program("check " + navarro + " --set accommodation_D=-1").status, 1);  // ln(0): a value that the system cannot have
 }
 
+// A parameter has no range, but what is made of it has: the message names the key, what it came to, and the expression.
+TEST(Parameters, a_value_out_of_all_proportion_is_told_where_it_is_used) {
+  for (const std::string& command : {"check " + arizona, "refraction " + arizona, "rays " + arizona}) {
+    const Outcome run = run_program(command + at(1e9));
+    EXPECT_EQ(run.status, 1) << command;
+    EXPECT_NE(run.err.find("error: nd must be a number from 0.001 to 1000, not -219999997439998.6, what '= 1.42 + 0.00256 * accommodation_D - 0.0...' comes to\n"), std::string::npos) << run.err;
+  }
+  const Outcome beyond = run_program("check " + arizona + " --set accommodation_D=1e101");
+  EXPECT_EQ(beyond.status, 2);
+  EXPECT_EQ(beyond.err, "--set accommodation_D: error: a parameter must be at most 1e+100 in size, not 1e+101\n");
+}
+
 TEST(Schema, is_printed_whole) {
   const Outcome run = run_program("schema");
   EXPECT_EQ(run.status, 0);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -207,6 +208,31 @@ TEST(RaysCommand, AimsAtTheStopAndSaysWhatCannotBeAimed) {
   }
   EXPECT_EQ(at_stop, 2);
   EXPECT_GE(lost, 1);
+}
+
+// What the head of navarro-eye.yaml says of wide angles: the retina is a hemisphere, which the rays pass; turned about its centre, the same sphere takes them, in
+// the same places where both have them.
+TEST(RaysCommand, land_on_a_retina_that_is_turned_about_its_centre) {
+  const Folder folder;
+  const auto chief_ray = [&](double angle, bool is_turned) {
+    const std::string turned = "parameters: {turn_deg: 40}\nsurfaces: [{name: retina, decenter_mm: [0, = 12 * sin_deg(turn_deg), = 12 * cos_deg(turn_deg) - 12], tilt_deg: [= -turn_deg, 0, 0]}]\n";
+    const std::string system = folder.file("wide.yaml", fmt::format("sagitta: 1\nextends: {}/systems/navarro-eye.yaml\naperture: {{stop_diameter_mm: 3, aim: stop}}\nfields: {{angles_deg: [[0, {}]]}}\n{}", SAGITTA_SOURCE_DIR,
+                                                                    angle, is_turned ? turned : ""));
+    const Outcome run = run_program("rays " + system + " --wavelength 543");
+    EXPECT_EQ(run.err.find("error"), std::string::npos) << run.err;
+    return parse_rays(run.out).back();
+  };
+  for (const double angle : {75., 80., 88.}) {
+    EXPECT_EQ(chief_ray(angle, false).status, "missed") << angle;
+    const RayRow hit = chief_ray(angle, true);
+    EXPECT_EQ(hit.status, "ok") << angle;
+    EXPECT_LT(hit.z, 23.9203 - 12);  // before the equator of the retina as it is prescribed
+    EXPECT_NEAR(std::hypot(hit.y, hit.z - (23.9203 - 12)), 12, 1e-12);
+  }
+  for (const double angle : {0., 70.}) {
+    EXPECT_NEAR(chief_ray(angle, true).y, chief_ray(angle, false).y, 1e-12);
+    EXPECT_NEAR(chief_ray(angle, true).z, chief_ray(angle, false).z, 1e-12);
+  }
 }
 
 }  // namespace

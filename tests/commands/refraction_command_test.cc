@@ -2,6 +2,7 @@
 // What `sagitta refraction` takes, tells and draws; its values are of tests/analysis/refraction_test.cc and published_systems_test.cc.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -54,6 +55,29 @@ TEST(RefractionCommand, refuses_what_it_cannot_draw_or_reach) {
   EXPECT_EQ(beyond.status, 1);
   EXPECT_THAT(beyond.err, HasSubstr("sagitta refraction: 400 nm and 1 more lie outside the range of navarro-cornea, 458 to 632.8 nm\n"));
   EXPECT_EQ(run_program("refraction " + systems + "arizona-eye.yaml --spectrum 700:400:10").status, 2);
+}
+
+// nd and Vd are of visible light: one warning a medium, of the wavelengths beyond it, and none of those within.
+TEST(RefractionCommand, warns_of_a_formula_that_is_extrapolated) {
+  const std::string warning = "sagitta refraction: warning: nd 1.377 vd 57.1 is meant for visible light, 380 to 780 nm, and extrapolated at 100, 150, 200 nm\n";
+  const Outcome ultraviolet = run_program("refraction " + systems + "arizona-eye.yaml --spectrum 100:200:50");
+  EXPECT_EQ(ultraviolet.status, 0);
+  EXPECT_THAT(ultraviolet.err, HasSubstr(warning));
+  EXPECT_EQ(std::count(ultraviolet.err.begin(), ultraviolet.err.end(), '\n'), 4);  // of four media, the aqueous stands there twice
+  EXPECT_EQ(run_program("refraction " + systems + "arizona-eye.yaml --spectrum 380:780:100").err, "");
+  EXPECT_EQ(run_program("refraction " + systems + "le-grand-eye.yaml --spectrum 100:200:50").err, "");  // one index each, at every wavelength
+}
+
+TEST(RefractionCommand, says_where_there_is_no_eye) {
+  const Outcome lens = run_program("refraction " + systems + "cooke-triplet.yaml"), before = run_program("refraction " + systems + "cooke-triplet.yaml --vertex-mm 12");
+  EXPECT_EQ(lens.status, 0);
+  EXPECT_THAT(lens.out, HasSubstr("refraction at the vertex plane of surface 1; no eye, for its image is in air: the image surface is taken for the retina\n"));
+  EXPECT_THAT(before.out, HasSubstr("refraction at the plane 12 mm before surface 1; no eye"));
+  EXPECT_FALSE(refraction(systems + "cooke-triplet.yaml").at("is_eye"));
+  for (const char* eye : {"navarro-eye.yaml", "liou-brennan-eye.yaml"}) EXPECT_TRUE(refraction(systems + eye).at("is_eye"));
+  const Folder folder;
+  const std::string said = folder.file("said.yaml", "sagitta: 1\nextends: " + systems + "cooke-triplet.yaml\neye: left\n");
+  EXPECT_THAT(run_program("refraction " + said).out, HasSubstr("at the cornea's vertex plane; left eye\n"));
 }
 
 }  // namespace

@@ -121,5 +121,20 @@ TEST(Table, OfOneRowHoldsAtThatWavelengthOnly) {
   EXPECT_TRUE(std::isnan(medium.index(0.59)));
 }
 
+TEST(Medium, ATableTellsWhereItWasMeasured) {
+  EXPECT_EQ(from_table("lens", {{.458, 1.43}, {.543, 1.422}}).dispersion->measured_um(), (std::vector<double>{.458, .543}));
+  EXPECT_TRUE(from_nd_vd(1.5, 60).dispersion->measured_um().empty());
+}
+
+TEST(Medium, AFormulaForVisibleLightIsExtrapolatedBeyond) {
+  const Medium glass = from_nd_vd(1.5, 60);
+  for (const Medium& one : {glass, shifted(glass, 1.4, .55)}) {
+    for (const double um : {.38, .55, .78}) EXPECT_FALSE(one.is_extrapolated(um)) << um;
+    for (const double um : {.3799, .7801, 10.}) EXPECT_TRUE(one.is_extrapolated(um)) << um;
+    EXPECT_FALSE(one.is_extrapolated(1e-10));  // has no index
+  }
+  for (const Medium& one : {air(), constant("index 1.4", 1.4), from_table("lens", {{.1, 1.43}, {10, 1.422}})}) EXPECT_FALSE(one.is_extrapolated(1));
+}
+
 }  // namespace
 }  // namespace sagitta::medium

@@ -69,7 +69,7 @@ TEST(Expression, SaysWhatIsWrongWhereItIs) {
                      {"= .inf", 2, "'.' cannot stand here", "a product is written with *"},
                      {"= )", 2, "')' cannot stand here", ""},
                      {"= == 2", 2, "'=' cannot stand here", ""},
-                     {"= 2 * (3 + 1", 6, "this '(' has no ')'", "in a line of [ ] or { } an expression with a comma needs quotes"},
+                     {"= 2 * (3 + 1", 6, "this '(' has no ')'", "quote the expression: in a line of [ ] or { } one with a comma needs quotes"},
                      {"= ln()", 5, "')' cannot stand here", ""},
                      {"= max(1, )", 9, "')' cannot stand here", ""},
                      {"= acommodation_D", 2, "there is no parameter 'acommodation_D'", "did you mean 'accommodation_D'?"},

@@ -264,5 +264,20 @@ TEST(Keys, AreNamedOnceInEachTable) {
     }
 }
 
+// Once of a medium, however often it is used; what disperses as another is extrapolated with it.
+TEST(Reader, WarnsWhereAFormulaIsExtrapolated) {
+  const auto told = [](const std::string& wavelengths, const std::string& medium) {
+    return test::text_of(test::read_text("sagitta: 1\nwavelengths_nm: [" + wavelengths + "]\naperture: {entrance_pupil_diameter_mm: 4}\nsurfaces:\n  - {stop: true, thickness_mm: 20, medium: " + medium +
+                                         "}\n  - {thickness_mm: 20, medium: " + medium + "}\n  - {}\n").findings);
+  };
+  const std::string glass = "{nd: 1.5, vd: 60}", shifted = "{index: 1.4, reference_nm: 550, dispersion: " + glass + "}";
+  EXPECT_EQ(told("380, 550, 780", glass), "");
+  EXPECT_EQ(told("379, 780.1", "{index: 1.5}"), "");
+  const std::string warning = told("379, 550, 780.1", glass);
+  EXPECT_NE(warning.find(":5:44: warning: nd 1.5 vd 60 is meant for visible light, 380 to 780 nm, and extrapolated at 379, 780.1 nm\n  hint: "), std::string::npos) << warning;
+  EXPECT_EQ(warning.find("warning", warning.find("warning") + 1), std::string::npos) << warning;
+  EXPECT_NE(told("1064, 550", shifted).find("dispersing as nd 1.5 vd 60, is meant for visible light, 380 to 780 nm, and extrapolated at 1064 nm\n"), std::string::npos) << told("1064, 550", shifted);
+}
+
 }  // namespace
 }  // namespace sagitta::prescription

@@ -21,6 +21,11 @@ TEST(Utf8Text, IsTheSameFromEveryEncoding) {
   EXPECT_EQ(utf8_text(""), "");
 }
 
+TEST(Utf16WithoutMark, IsToldByItsZeroBytes) {
+  for (const std::string& one : {"V\0E\0R\0S\0"s, "\0V\0E\0R\0S"s, "V\0"s, "V\0E\0R"s, "\xAC\x20 \0a\0"s, "\0\x01 \0a\0a\0a\0a\0a\0a\0a\0a\0"s}) EXPECT_TRUE(is_utf_16_without_mark(one)) << one;
+  for (const std::string& one : {""s, "V"s, "VERS"s, "\0\0"s, "V\0\0\0E\0\0\0"s, "VERS\0 is a text with one zero byte"s, "\xFF\xFE" "V\0E\0"s, "\xFE\xFF" "\0V\0E"s, text, "\xB5m"s}) EXPECT_FALSE(is_utf_16_without_mark(one)) << one;
+}
+
 TEST(Utf8Text, WhatIsNoCharacterIsReplaced) {
   EXPECT_EQ(utf8_text("\xFF\xFE" "a\0b"s), "a\uFFFD");                          // half a unit
   EXPECT_EQ(utf8_text("\xFF\xFE" "\x3D\xD8" "a\0"s), "\uFFFD" "a");             // a high surrogate alone
