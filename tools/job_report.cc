@@ -45,6 +45,7 @@ output::Report make_report(const prescription::Model& model, const scene::Compil
     for (const auto& field : model.fields.given_points) report.given_fields.push_back({field.x, field.y});
   }
   report.wavelengths_nm = model.wavelengths_nm;
+  report.pupil_is_of_stop = model.aperture.is_of_stop;
   for (const auto& surface : model.surfaces) {
     report.surface_names.push_back(surface.name);
     const auto& texts = surface.shape.parameters.texts;

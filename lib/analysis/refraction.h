@@ -29,7 +29,7 @@
 //
 // Error: (5) and (6) some 1e-7 D, from the digits of W and the differences' sixth order. Off axis, and where the x and the y section have other pupils, the
 // exit pupil that W is measured in is not where the entrance pupil is seen along the chief ray; that costs the first two some H^2 of the distance between them:
-// .001 D of an eye of 4 D at 30 degrees, .03 D at 60.
+// .001 D of an eye of 4 D at 30 degrees, .03 D at 60. A near object has its part in H.
 //
 // Source: Thibos, Wheeler and Horner, Optom. Vis. Sci. 74, 367 (1997), for (2) and (3); Keating, Am. J. Optom. Physiol. Opt. 58, 810 (1981), for matrices
 // and (4); ANSI Z80.28-2017 for the frame.

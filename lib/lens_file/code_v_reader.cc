@@ -25,6 +25,9 @@ using prescription::FieldKind;
 constexpr std::array without_optics{"LEN", "GO",  "INI", "WTW", "WTF", "CLS", "CCY", "CCX", "THC", "GLC", "XDC", "YDC", "ZDC", "ADC", "BDC", "CDC", "KC",  "AC",  "BC", "CC",
                                     "DC",  "EC",  "FC",  "GC",  "HC",  "JC",  "DER", "PIK", "CUM", "THM", "CWL", "CA",  "POL", "DDM", "MFL", "LAB"};
 
+constexpr std::array other_apertures{OtherAperture{"REX", "a rectangular aperture"}, OtherAperture{"REY", "a rectangular aperture"}, OtherAperture{"ELX", "an elliptical aperture"},
+                                     OtherAperture{"ELY", "an elliptical aperture"}, OtherAperture{"ADX", "an aperture that is decentered"}, OtherAperture{"ADY", "an aperture that is decentered"}};
+
 constexpr Real infinite_object = 1e10L;  // in the units of the file
 
 class CodeVReader {
@@ -92,7 +95,7 @@ class CodeVReader {
       return report_.left_out(numbers_.place(statement), "PRV: a private catalogue of glasses", "give its glasses as files NAME.yml beside the prescription");
     }
     if (std::find(without_optics.begin(), without_optics.end(), name) != without_optics.end()) return;
-    report_.left_out(numbers_.place(statement), fmt::format("{} is not known", prescription::excerpt(given)));
+    leave_out(given, name, other_apertures, numbers_.place(statement), report_);
   }
 
   // A second word S3, SO or SI names the surface of the command, and is taken away. False, after saying so, for other qualifiers.

@@ -10,6 +10,7 @@
 
 #include "lib/lens_file/glasses.h"
 #include "lib/lens_file/lens_reader.h"
+#include "lib/lens_file/numbers.h"
 #include "lib/lens_file/paraxial_image.h"
 #include "lib/lens_file/prescription_writer.h"
 #include "lib/lens_file/report.h"
@@ -80,6 +81,19 @@ Findings in_order(const Findings& findings, const std::string& file) {
   return sorted;
 }
 
+// A prescription traces each wavelength once.
+void merge_wavelengths(Lens& lens, const std::string& file, Report& report) {
+  std::vector<double> all;
+  for (std::size_t i = 0; i < lens.wavelengths_nm.size(); ++i) {
+    const double nm = lens.wavelengths_nm[i];
+    const auto same = std::find(all.begin(), all.end(), nm);
+    if (same == all.end()) all.push_back(nm);
+    else report.warning({file}, fmt::format("the wavelength {} nm is repeated; it is taken once", number_text(nm)));
+    if (i == lens.primary) lens.primary = static_cast<std::size_t>(std::find(all.begin(), all.end(), nm) - all.begin());
+  }
+  lens.wavelengths_nm = std::move(all);
+}
+
 }  // namespace
 
 Imported import(const ImportRequest& request) {
@@ -93,6 +107,7 @@ Imported import(const ImportRequest& request) {
   }
   std::optional<Lens> lens = read_lens(request.file, report);
   if (lens && !lens->wavelengths_nm.empty()) {
+    merge_wavelengths(*lens, request.file, report);
     find_glasses(*lens, request.output, catalogs, report);
     if (!report.has_errors()) check(*lens, request.output, catalogs, report);
     if (!report.has_errors()) solve_paraxial_image(*lens, request.output, catalogs, report);

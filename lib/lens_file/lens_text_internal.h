@@ -2,9 +2,12 @@
 // Lines and words of a lens file with their places.
 #pragma once
 
+#include <algorithm>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "lib/lens_file/numbers.h"
@@ -32,6 +35,16 @@ struct Statement {
 inline std::string_view trimmed(std::string_view text) {
   const std::size_t begin = text.find_first_not_of(blanks);
   return begin == std::string_view::npos ? std::string_view() : text.substr(begin, text.find_last_not_of(blanks) + 1 - begin);
+}
+
+// What a reader does not take: an aperture that a prescription has not, or what is not known.
+struct OtherAperture {
+  std::string_view name, what;
+};
+inline void leave_out(const std::string& given, std::string_view name, std::span<const OtherAperture> apertures, Place at, Report& report) {
+  const auto found = std::find_if(apertures.begin(), apertures.end(), [&](const OtherAperture& one) { return one.name == name; });
+  if (found == apertures.end()) return report.left_out(std::move(at), prescription::excerpt(given) + " is not known");
+  report.left_out(std::move(at), prescription::excerpt(given) + ": " + std::string(found->what), "apertures here are circles about a surface's vertex");
 }
 
 // Asks statements for their numbers, and says where there is none.

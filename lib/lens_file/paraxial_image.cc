@@ -35,7 +35,9 @@ void solve_paraxial_image(Lens& lens, const std::string& output, std::span<const
   if (given != 0)
     report.warning(*lens.solves_image, fmt::format("the last thickness, {} mm, is not the one to the paraxial image; it is solved: {} mm", number_text(static_cast<double>(given)),
                                                    number_text(static_cast<double>(solved))));
-  lens.remarks.push_back("The last thickness is solved: it reaches the paraxial image at the primary wavelength.");
+  lens.remarks.push_back(lens.image_shift == 0 ? "The last thickness is solved: it reaches the paraxial image at the primary wavelength."
+                                               : fmt::format("The last thickness is solved: it reaches the paraxial image at the primary wavelength, and the defocus of {} mm beyond it.",
+                                                             number_text(static_cast<double>(lens.image_shift))));
   last.thickness = solved + lens.image_shift;
 }
 

@@ -27,6 +27,9 @@ constexpr std::array without_optics{
     // tolerances, merit function, configurations
     "TOL", "TOLE", "MOFF", "BLNK", "DMFS", "CONF", "OPDX", "TCED", "TCMM", "RGLA"};
 
+constexpr std::array other_apertures{OtherAperture{"SQAP", "a rectangular aperture"}, OtherAperture{"SQOB", "a rectangular obscuration"}, OtherAperture{"ELAP", "an elliptical aperture"},
+                                     OtherAperture{"ELOB", "an elliptical obscuration"}, OtherAperture{"SPID", "a spider"}, OtherAperture{"USAP", "an aperture of the user's own shape"}};
+
 struct Unit {
   std::string_view name;
   Real mm;
@@ -107,7 +110,7 @@ class ZemaxReader {
       if (skipped_count_++ == 0) first_skipped_ = numbers_.place(statement);
       return;
     }
-    report_.left_out(numbers_.place(statement), fmt::format("{} is not known", prescription::excerpt(statement.name())));
+    leave_out(statement.name(), statement.name(), other_apertures, numbers_.place(statement), report_);
   }
 
   ZemaxSurface& surface() { return surfaces_.back(); }
@@ -212,6 +215,8 @@ class ZemaxReader {
     if (!nd || !vd) return;
     const double index = static_cast<double>(*nd), abbe = static_cast<double>(*vd);
     if (!(prescription::index_range.contains(index) && abbe >= 0)) return report_.broken(at, fmt::format("GLAS: a model glass of nd {} and Vd {}", number_text(index), number_text(abbe)));
+    if (statement.words.size() > 6 && numbers_.number(statement, 6).value_or(0) != 0)
+      report_.left_out(numbers_.place(statement.words[6]), "GLAS: dPgF, the partial dispersion of a model glass", "give its index as a table or a formula in a file NAME.yml, and NAME here");
     surface().medium = {abbe == 0 ? Medium::Kind::index : Medium::Kind::nd_vd, {}, index, abbe, {}, at};
     if (abbe != 0 && !has_model_glass_) lens_.remarks.push_back("Its model glasses are two-term formulas through nd and Vd here, which differ between and beyond the F and C lines from OpticStudio's own.");
     has_model_glass_ |= abbe != 0;
@@ -328,6 +333,7 @@ void ZemaxReader::finish_surfaces() {
   for (std::size_t i = 1; i < surfaces_.size(); ++i) {
     const ZemaxSurface& given = surfaces_[i];
     const bool is_last = i + 1 == surfaces_.size();
+    if (given.thickness.place.line == 0) report_.left_out(given.place, fmt::format("SURF {} has no DISZ, which every surface has", i), "does the file end too early?");
     if (given.infinite) report_.broken(given.thickness.place, "DISZ INFINITY: only the object may be at infinity");
     if (is_last && given.medium.kind != Medium::Kind::air)
       report_.warning(given.medium.place, "GLAS: what is behind the image surface, the last one, is left out: no ray gets there", "if it is not the image, the file ends too early");

@@ -33,6 +33,7 @@ struct Report {
   std::string given_field;                    // where they were given as another quantity: its name with its unit, "real_image_height_mm"
   std::vector<std::array<double, 2>> given_fields;
   std::vector<double> wavelengths_nm;
+  bool pupil_is_of_stop = false;              // aim: stop
   std::vector<std::string> surface_names;     // [0] of surface 1
   std::vector<int> surfaces_of_flat_facets;   // their numbers: wavefronts behind one are of no use, which is said
   scene::FirstOrder first_order;              // at the primary wavelength

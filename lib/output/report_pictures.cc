@@ -51,6 +51,7 @@ std::vector<ExrAttribute> pupil_map_attributes(const Report& report, int size) {
   const auto pixel = static_cast<float>(semi_diameter / (size / 2 - 1));
   std::vector<ExrAttribute> attributes{{"units.Y", "waves"},
                                        {"grid", fmt::format("column i and row N-1-j stand at (i - N/2, j - N/2)/(N/2 - 1) of the unit pupil, N = {}; x right, y up", size)}};
+  if (report.pupil_is_of_stop) attributes.push_back({"pupil", "the stop: the unit pupil is its disc; sizes in mm are those of the paraxial entrance pupil"});
   if (std::isfinite(semi_diameter)) {  // a telecentric beam has no pupil of finite size
     attributes.push_back({"pixel_size_mm", std::array{pixel, pixel}});
     attributes.push_back({"centre_mm", std::array{-pixel / 2, -pixel / 2}});  // the chief ray's sample is column N/2
@@ -113,15 +114,15 @@ Panel spot_panel(const Report& report, const analysis::JobResult& result) {
 }
 
 Panel pupil_panel(const Report& report, int size, const std::vector<double>& opd_waves, const std::string& empty_note) {
-  const bool has_size = std::isfinite(report.first_order.entrance_pupil.semi_diameter);
-  const double pupil = has_size ? report.first_order.entrance_pupil.semi_diameter : 1;  // telecentric: the unit disc
+  const bool has_size = std::isfinite(report.first_order.entrance_pupil.semi_diameter) && !report.pupil_is_of_stop;
+  const double pupil = has_size ? report.first_order.entrance_pupil.semi_diameter : 1;  // telecentric, or points of the stop: the unit disc
   Panel panel;
   panel.axes.unit_mm = has_size;
   panel.color_map = ColorMap::diverging;
   panel.quantity = "OPD";
   panel.unit = "waves";
-  panel.axes.x_label = "pupil x";
-  panel.axes.y_label = "pupil y";
+  panel.axes.x_label = report.pupil_is_of_stop ? "stop x" : "pupil x";
+  panel.axes.y_label = report.pupil_is_of_stop ? "stop y" : "pupil y";
   panel.empty_note = empty_note;
   if (opd_waves.empty()) {
     panel.map = {2, 2, std::vector<float>(4, std::numeric_limits<float>::quiet_NaN())};

@@ -98,7 +98,7 @@ struct Scene {
   // Whether its x-z section is another than its y-z section, by more than the rounding of sums of terms.
   bool is_astigmatic() const {
     return std::any_of(surfaces.begin(), surfaces.end(), [](const Surface& one) {
-      return std::abs(one.vertex_curvature_x - one.vertex_curvature) > 1e-13 * std::max(std::abs(one.vertex_curvature_x), std::abs(one.vertex_curvature));
+      return !one.image && std::abs(one.vertex_curvature_x - one.vertex_curvature) > 1e-13 * std::max(std::abs(one.vertex_curvature_x), std::abs(one.vertex_curvature));
     });
   }
   const Surface& surface(int number) const { return surfaces[static_cast<std::size_t>(number - 1)]; }

@@ -122,6 +122,7 @@ TEST(CodeVImageSolve, finds_the_paraxial_image) {
   const std::string mirror = "S 0 60\nSTO\nS -100 -1 REFL\n PIM\nSI 0 0.25\n";
   const auto solved = import_text("lens.seq", sequence(mirror));
   EXPECT_THAT(solved.prescription, HasSubstr("thickness_mm: -49.75, medium: mirror"));
+  EXPECT_THAT(solved.prescription, HasSubstr("at the primary wavelength, and the defocus of 0.25 mm beyond it."));
   EXPECT_THAT(solved.messages, HasSubstr("warning: the last thickness, -1 mm, is not the one to the paraxial image; it is solved: -50 mm"));
   // what a file gives to its digits stands
   std::string given = mirror;
@@ -151,9 +152,9 @@ TEST(CodeVFile, partly_understood_lists_what_is_left_out) {
   const std::string text = sequence("S 50 4 NBK7_SCHOTT\nSTO\n REX 5; REY 6\nS 0 3\n DIF DOE\nSI 0 0\nVUX 0.1 0.2\n");
   const Outcome refused = import_text("lens.seq", text), partial = import_text("lens.seq", text, true);
   EXPECT_EQ(refused.prescription, "");
-  EXPECT_THAT(refused.messages, HasSubstr("lens.seq:17:2: error: REX is not known\nlens.seq:17:9: error: REY is not known\nlens.seq:19:2: error: DIF is not known\nlens.seq:21:1: error: VUX: vignetting factors\n"));
+  EXPECT_THAT(refused.messages, HasSubstr("lens.seq:17:2: error: REX: a rectangular aperture\n  hint: apertures here are circles about a surface's vertex\nlens.seq:17:9: error: REY: a rectangular aperture\n  hint: apertures here are circles about a surface's vertex\nlens.seq:19:2: error: DIF is not known\nlens.seq:21:1: error: VUX: vignetting factors\n"));
   EXPECT_EQ(partial.left_out_count, 4);
-  EXPECT_THAT(partial.prescription, HasSubstr("#   17: REX is not known\n#   17: REY is not known\n#   19: DIF is not known\n#   21: VUX: vignetting factors\n"));
+  EXPECT_THAT(partial.prescription, HasSubstr("#   17: REX: a rectangular aperture\n#   17: REY: a rectangular aperture\n#   19: DIF is not known\n#   21: VUX: vignetting factors\n"));
   EXPECT_THAT(partial.messages, Not(HasSubstr("error")));
 }
 

@@ -227,12 +227,22 @@ TEST(ZemaxFile, may_go_on_with_what_has_no_optics) {
   EXPECT_NE(import_text("lens.zmx", "UNIT MM\nENPD 2\nWAVL 0.5\nSURF 0\nSURF 1\nSTOP\nCRVT 1\nDISZ 1\nSURF 2\n").messages.find("lens.zmx:7:1: error: CRVT is not known"), std::string::npos);
 }
 
+// 2026-11-23: the prescription was written twice with the same wavelength, which its reader refused.
+TEST(ZemaxFile, may_repeat_a_wavelength) {
+  std::string text = zemax_with("TYPE STANDARD\nCURV 0.1\nDISZ 5");
+  text.replace(text.find("FTYP 0 0 1 1"), 12, "FTYP 0 0 1 3");
+  text.replace(text.find("PWAV 1"), 6, "PWAV 3");
+  const Outcome run = import_text("lens.zmx", text);
+  EXPECT_EQ(run.messages, "lens.zmx:1:1: warning: the wavelength 550 nm is repeated; it is taken once\n");
+  EXPECT_THAT(run.prescription, HasSubstr("wavelengths_nm: [543, 550]\nprimary_nm: 550\n"));
+}
+
 TEST(ZemaxFile, partly_understood_lists_what_is_left_out) {
   const std::string text = zemax_with("TYPE GRID_PHA\nCURV 0.05\nDISZ 5\nGPHA whatever", "TYPE STANDARD\nCURV 0\nDISZ 5\nSQAP 5 5 0");
   const Outcome refused = import_text("lens.zmx", text), partial = import_text("lens.zmx", text, true);
   EXPECT_EQ(refused.prescription, "");
   EXPECT_EQ(partial.left_out_count, 3);
-  const std::string list = "# Left out of that file, by line:\n#   45: a surface of type GRID_PHA is not known; its conic (CURV, CONI) stands for it\n#   48: GPHA is not known\n#   57: SQAP is not known\n";
+  const std::string list = "# Left out of that file, by line:\n#   45: a surface of type GRID_PHA is not known; its conic (CURV, CONI) stands for it\n#   48: GPHA is not known\n#   57: SQAP: a rectangular aperture\n";
   EXPECT_THAT(partial.prescription, HasSubstr(list));
   EXPECT_THAT(partial.prescription, HasSubstr("{conic: {radius_mm: 20}, thickness_mm: 5}"));
   std::string as_warnings = refused.messages;

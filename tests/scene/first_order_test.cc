@@ -174,6 +174,10 @@ TEST(FirstOrder, the_x_section_is_the_y_section_of_the_system_turned) {
   const scene::CompileResult round = system("conic: {radius_mm: 20}", "zernike: {radius_mm: -30, normalization_radius_mm: 3, indexing: osa, coefficients_um: {4: 20, 12: -7, 24: 3}}");
   ASSERT_TRUE(round.scene);
   EXPECT_FALSE(round.first_order_x);
+  // A toric retina refracts nothing (Atchison's eye, 2026-11-23: its x pupils were reported, the same as the others).
+  const scene::CompileResult retina = compile_text(prescription_of("  - {stop: true, conic: {radius_mm: 7.8}, thickness_mm: 20, medium: {index: 1.336}}\n  - {biconic: {radius_x_mm: -12, radius_y_mm: -11}}\n"));
+  ASSERT_TRUE(retina.scene);
+  EXPECT_FALSE(retina.first_order_x);
 }
 
 }  // namespace
