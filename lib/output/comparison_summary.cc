@@ -18,7 +18,8 @@ using surface::Status;
 
 constexpr std::size_t highest_shown = 15;  // Zernike terms of orders 0 to 4
 
-ordered_json difference_json(const Report& report, std::size_t i, const analysis::Difference& difference) {
+// Both systems' coefficients are told in the frame of the first.
+ordered_json difference_json(const Report& first, const Report& report, std::size_t i, const analysis::Difference& difference) {
   ordered_json json = place_json(report, report.results[i]);
   json["spot"] = {{"rms_radius_difference_um", 1e3 * difference.spot.rms_radius},
                   {"rms_radius_difference_percent", difference.spot.rms_radius_percent},
@@ -33,8 +34,10 @@ ordered_json difference_json(const Report& report, std::size_t i, const analysis
                          {"samples_only_in_first", wavefront->only_in_first},
                          {"samples_only_in_this", wavefront->only_in_other},
                          {"zernike", nullptr}};
-    if (!wavefront->zernike_um.empty())
-      json["wavefront"]["zernike"] = {{"indexing", "osa"}, {"coefficients_um", wavefront->zernike_um}};
+    if (!wavefront->zernike_um.empty()) {
+      json["wavefront"]["zernike"] = {{"indexing", "osa"}, {"coefficients_um", in_frame_of(first, wavefront->zernike_um)}};
+      if (!first.eye.empty()) json["wavefront"]["zernike"]["frame"] = osa_frame_of(first);
+    }
   } else {
     json["reason"] = "one of the two has no wavefront";
   }
@@ -84,26 +87,26 @@ Table main_table(const Comparison& comparison) {
 Table zernike_table(const Comparison& comparison, std::size_t i) {
   Table table{{{"j", ""}, {"n", ""}, {"m", ""}}, {}};
   std::size_t term_count = 0;
-  std::vector<const std::vector<double>*> columns;
+  std::vector<std::vector<double>> columns;
   for (const ComparedSystem& system : comparison.systems) {
     const auto& wavefront = system.report.results[i].wavefront->wavefront;
     if (!wavefront || !wavefront->zernike) continue;
     table.columns.push_back({system.report.system, "um"});
-    columns.push_back(&wavefront->zernike->coefficients);
-    term_count = std::max(term_count, columns.back()->size());
+    columns.push_back(in_frame_of(comparison.systems.front().report, wavefront->zernike->coefficients));
+    term_count = std::max(term_count, columns.back().size());
   }
   if (columns.empty()) return {};
   const auto in_um = [](double value) { return fmt::format("{:.4f}", std::round(value * 1e4) / 1e4 + 0.0); };  // -0 is 0
   for (std::size_t j = 0; j < std::min(term_count, highest_shown); ++j) {
     const auto term = numerics::zernike_term(numerics::ZernikeIndexing::osa, static_cast<int>(j));
     std::vector<std::string> row{std::to_string(j), std::to_string(term.n), std::to_string(term.m)};
-    for (const auto* column : columns) row.push_back(in_um((*column)[j]));
+    for (const auto& column : columns) row.push_back(in_um(column[j]));
     table.rows.push_back(std::move(row));
   }
   std::vector<std::string> higher{"higher", "", ""};
-  for (const auto* column : columns) {
+  for (const auto& column : columns) {
     double squares = 0;
-    for (std::size_t j = highest_shown; j < column->size(); ++j) squares += (*column)[j] * (*column)[j];
+    for (std::size_t j = highest_shown; j < column.size(); ++j) squares += column[j] * column[j];
     higher.push_back(in_um(std::sqrt(squares)));
   }
   table.rows.push_back(std::move(higher));
@@ -143,7 +146,7 @@ std::string summary_json(const Comparison& comparison) {
     if (&system == &first) continue;
     ordered_json of{{"system", system.report.system}, {"from", first.report.system}, {"results", ordered_json::array()}};
     for (std::size_t i = 0; i < system.differences.size(); ++i)
-      of["results"].push_back(difference_json(system.report, i, system.differences[i]));
+      of["results"].push_back(difference_json(first.report, system.report, i, system.differences[i]));
     json["differences"].push_back(std::move(of));
   }
   return text_of(json);
@@ -159,7 +162,7 @@ std::string summary_text(const Comparison& comparison) {
     const std::size_t i = field * first.wavelengths_nm.size() + comparison.primary;
     const Table table = zernike_table(comparison, i);
     if (!table.rows.empty())
-      text += fmt::format("\nZernike coefficients (osa) of the wavefronts, {}\n\n{}", panel_title(first, first.results[i]), to_text(table));
+      text += fmt::format("\nZernike coefficients (osa) of the wavefronts, {}{}\n\n{}", panel_title(first, first.results[i]), first.eye.empty() ? "" : "; " + osa_frame_of(first), to_text(table));
   }
   std::string below;
   for (const ComparedSystem& system : comparison.systems) {

@@ -102,7 +102,7 @@ Chart refraction_chart(const RefractionReport& report) {
   chart.x_label = "wavelength (nm)";
   chart.y_label = system.fields.size() == 1 ? "M (D)" : "paraxial M (D)";
   chart.x_scale = chart.y_scale = AxisScale::linear;
-  chart.footer = fmt::format("at {}; sagitta {}", plane_of(report), system.version);
+  chart.footer = fmt::format("at {}{}; sagitta {}", plane_of(report), system.eye.empty() ? "" : fmt::format(", {} eye", system.eye), system.version);
   chart.empty_note = "no field has a refraction";
   const auto add = [&](std::string name, std::size_t field, const std::function<std::optional<Power>(const Refraction&)>& power) {
     ChartSeries series{.name = std::move(name), .points = {}, .is_joined = true, .fit = {}};

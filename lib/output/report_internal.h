@@ -22,6 +22,11 @@ Panel wavefront_panel(const Report& report, const analysis::JobResult& result);
 // An OPD map over the pupil, with its axes and colours; an empty map has `empty_note` in its place.
 Panel pupil_panel(const Report& report, int size, const std::vector<double>& opd_waves, const std::string& empty_note);
 
+// Of an eye: the frame of spots, pictures and maps.
+inline constexpr const char* tracers_frame = "x to the examiner's left, y up";
+// "right eye, x to the examiner's left, y up; sagitta 0.1.0"
+std::string pictures_footer(const Report& report);
+
 // "" where wavefronts are to be trusted, or none are there.
 std::string facets_note(const Report& report);
 

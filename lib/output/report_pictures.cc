@@ -37,13 +37,15 @@ std::string panel_title(const Report& report, const analysis::JobResult& result)
 std::vector<ExrAttribute> common_attributes(const Report& report, const analysis::JobResult& result,
                                             const trace::StatusCounts& rays) {
   const auto& [x, y] = report.fields[result.field];
-  return {{"system", report.system},
-          {"software", "sagitta " + report.version},
-          {"field", static_cast<int>(result.field)},
-          {report.fields_are_heights ? "object_height_mm" : "angle_deg", std::array{static_cast<float>(x), static_cast<float>(y)}},
-          {"wavelength_nm", report.wavelengths_nm[result.wavelength]},
-          {"rays_launched", static_cast<double>(rays.total())},
-          {"rays_ok", static_cast<double>(rays[surface::Status::ok])}};
+  std::vector<ExrAttribute> attributes{{"system", report.system},
+                                       {"software", "sagitta " + report.version},
+                                       {"field", static_cast<int>(result.field)},
+                                       {report.fields_are_heights ? "object_height_mm" : "angle_deg", std::array{static_cast<float>(x), static_cast<float>(y)}},
+                                       {"wavelength_nm", report.wavelengths_nm[result.wavelength]},
+                                       {"rays_launched", static_cast<double>(rays.total())},
+                                       {"rays_ok", static_cast<double>(rays[surface::Status::ok])}};
+  if (!report.eye.empty()) attributes.push_back({"eye", fmt::format("{}, {}", report.eye, tracers_frame)});
+  return attributes;
 }
 
 std::vector<ExrAttribute> pupil_map_attributes(const Report& report, int size) {
@@ -148,17 +150,21 @@ Panel wavefront_panel(const Report& report, const analysis::JobResult& result) {
 }
 
 Figure spot_figure(const Report& report) {
-  Figure figure{"Spots: " + report.system, "circle: RMS radius about the centroid; sagitta " + report.version, {}, static_cast<int>(std::min<std::size_t>(3, report.wavelengths_nm.size()))};
+  Figure figure{"Spots: " + report.system, "circle: RMS radius about the centroid; " + pictures_footer(report), {}, static_cast<int>(std::min<std::size_t>(3, report.wavelengths_nm.size()))};
   if (report.wavelengths_nm.size() == 1) figure.columns = static_cast<int>(std::min<std::size_t>(3, report.fields.size()));
   for (const auto& result : report.results) figure.panels.push_back(spot_panel(report, result));
   return figure;
 }
 
 Figure wavefront_figure(const Report& report) {
-  Figure figure{"Wavefronts, OPD = OPL(chief) − OPL(ray): " + report.system, "sagitta " + report.version, {}, 3};
+  Figure figure{"Wavefronts, OPD = OPL(chief) − OPL(ray): " + report.system, pictures_footer(report), {}, 3};
   figure.columns = static_cast<int>(std::min<std::size_t>(3, report.wavelengths_nm.size() == 1 ? report.fields.size() : report.wavelengths_nm.size()));
   for (const auto& result : report.results) figure.panels.push_back(wavefront_panel(report, result));
   return figure;
+}
+
+std::string pictures_footer(const Report& report) {
+  return (report.eye.empty() ? "" : fmt::format("{} eye, {}; ", report.eye, tracers_frame)) + "sagitta " + report.version;
 }
 
 std::string facets_note(const Report& report) {

@@ -66,15 +66,6 @@ ordered_json losses_json(const Report& report, const trace::StatusCounts& rays) 
   return result;
 }
 
-// From the tracer's frame, x to the examiner's left, to the examiner's own: what is odd in x changes sign.
-std::vector<double> of_examiner(std::vector<double> osa) {
-  for (std::size_t j = 0; j < osa.size(); ++j) {
-    const numerics::ZernikeTerm term = numerics::zernike_term(numerics::ZernikeIndexing::osa, static_cast<int>(j));
-    if (term.m < 0 ? term.m % 2 == 0 : term.m % 2 != 0) osa[j] = -osa[j];
-  }
-  return osa;
-}
-
 ordered_json wavefront_json(const Report& report, const analysis::WavefrontResult& measured) {
   const analysis::Wavefront& wavefront = *measured.wavefront;
   ordered_json result{{"rms_waves", wavefront.rms_waves},
@@ -82,12 +73,13 @@ ordered_json wavefront_json(const Report& report, const analysis::WavefrontResul
                       {"zernike", nullptr},
                       {"samples", measured.rays[Status::ok]},
                       {"reference_sphere_radius_mm", wavefront.reference_radius}};
-  if (wavefront.zernike)
+  if (wavefront.zernike) {
     result["zernike"] = {{"indexing", "osa"},
                          {"pupil_semi_diameter_mm", report.first_order.entrance_pupil.semi_diameter},
-                         {"coefficients_um", report.eye.empty() ? wavefront.zernike->coefficients : of_examiner(wavefront.zernike->coefficients)},
+                         {"coefficients_um", in_frame_of(report, wavefront.zernike->coefficients)},
                          {"residual_rms_um", wavefront.zernike->residual_rms}};
-  if (wavefront.zernike && !report.eye.empty()) result["zernike"]["frame"] = report.eye + " eye, OSA axes: x to the examiner's right, y up";
+    if (!report.eye.empty()) result["zernike"]["frame"] = osa_frame_of(report);
+  }
   return result;
 }
 
@@ -138,11 +130,25 @@ ordered_json place_json(const Report& report, const analysis::JobResult& result)
   return json;
 }
 
+std::string osa_frame_of(const Report& report) { return report.eye + " eye, OSA axes: x to the examiner's right, y up"; }
+
+std::vector<double> in_frame_of(const Report& report, std::vector<double> osa) {
+  for (std::size_t j = 0; j < osa.size() && !report.eye.empty(); ++j) {
+    const numerics::ZernikeTerm term = numerics::zernike_term(numerics::ZernikeIndexing::osa, static_cast<int>(j));
+    if (term.m < 0 ? term.m % 2 == 0 : term.m % 2 != 0) osa[j] = -osa[j];
+  }
+  return osa;
+}
+
 ordered_json report_json(const Report& report) {
   ordered_json json{{"system", report.system},
                     {"version", report.version},
                     {"first_order", first_order_json(report)},
                     {"results", ordered_json::array()}};
+  if (!report.eye.empty()) {
+    json["eye"] = report.eye;
+    json["frame"] = tracers_frame;
+  }
   for (const auto& [name, value] : report.parameters) json["parameters"][name] = value;
   if (!report.smoothing.empty()) json["smoothing"] = smoothing_json(report);
   for (const auto& part : report.parts) json["triangulated"].push_back({{"surface", part.surface}, {"points", part.points}, {"used", part.used}});
@@ -223,8 +229,8 @@ std::string summary_text(const Report& report) {
   if (const std::string note = facets_note(report); !note.empty()) below += note + "\n";
   const scene::FirstOrder& paraxial = report.first_order;
   const auto of_pupil = [](const scene::Pupil& pupil) { return fmt::format("{} mm wide at z = {} mm", significant(2 * pupil.semi_diameter), significant(pupil.z)); };
-  return fmt::format("{}\neffective focal length {} mm, back focal length {} mm, entrance pupil {}{}\n\n{}{}{}",
-                     printable(report.system, 200), significant(paraxial.effective_focal_length), significant(paraxial.back_focal_length),
+  return fmt::format("{}{}\neffective focal length {} mm, back focal length {} mm, entrance pupil {}{}\n\n{}{}{}",
+                     printable(report.system, 200), report.eye.empty() ? "" : fmt::format("; {} eye, {}", report.eye, tracers_frame), significant(paraxial.effective_focal_length), significant(paraxial.back_focal_length),
                      of_pupil(paraxial.entrance_pupil), report.first_order_x ? ", of the x section " + of_pupil(report.first_order_x->entrance_pupil) : "",
                      to_text(table), below.empty() ? "" : "\n", below);
 }

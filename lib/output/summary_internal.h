@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "lib/output/report.h"
 
@@ -16,6 +17,10 @@ nlohmann::ordered_json report_json(const Report& report);
 nlohmann::ordered_json place_json(const Report& report, const analysis::JobResult& result);
 nlohmann::ordered_json plan_json(const Report& report);
 std::string text_of(const nlohmann::ordered_json& json);
+
+// OSA's Zernike coefficients of a wavefront as they are told of `report`: with an eye in the examiner's frame, where what is odd in x has the other sign.
+std::vector<double> in_frame_of(const Report& report, std::vector<double> osa);
+std::string osa_frame_of(const Report& report);  // that frame, of a report with an eye
 
 // Five digits; "-" for a number that does not exist.
 std::string significant(double value);

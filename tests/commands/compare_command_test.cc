@@ -50,6 +50,21 @@ TEST(CompareCommand, a_system_differs_from_itself_by_nothing) {
   EXPECT_EQ(summary["systems"][0]["results"], summary["systems"][1]["results"]);
 }
 
+// 2026-11-23: differences of coefficients were in the tracer's frame beside coefficients in the examiner's.
+TEST(CompareCommand, of_eyes_has_coefficients_in_the_examiners_frame) {
+  const Folder folder;
+  const json summary = compared(folder.file("a.yaml", lens("a") + "eye: right\n") + " " + folder.file("b.yaml", lens("b", {}, ", tilt_deg: [0, 2, 0]") + "eye: right\n") + " --rays 300");
+  const json &difference = summary["differences"][0]["results"][0]["wavefront"]["zernike"];
+  EXPECT_EQ(difference["frame"], "right eye, OSA axes: x to the examiner's right, y up");
+  for (std::size_t j = 0; j < 36; ++j) {
+    const auto of = [&](std::size_t system) { return summary["systems"][system]["results"][0]["wavefront"]["zernike"]["coefficients_um"][j].get<double>(); };
+    EXPECT_EQ(difference["coefficients_um"][j].get<double>(), of(1) - of(0)) << j;
+    if (j == 2) {
+      EXPECT_GT(std::abs(of(1)), .01);  // tilt in x
+    }
+  }
+}
+
 TEST(CompareCommand, the_first_systems_numbers_are_those_of_trace) {
   const json summary = compared(systems + "cornea-zernike.yaml " + systems + "cornea-delaunay.yaml --rays 700 --pattern random:3");
   const json alone = traced(systems + "cornea-zernike.yaml", "--rays 700 --pattern random:3");

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "tests/support/compared.h"
 #include "tests/support/exr_file.h"
 #include "tests/support/program.h"
 
@@ -78,6 +79,30 @@ TEST(TraceCommand, json_on_the_screen_is_the_summary) {
   EXPECT_EQ(summary["results"][2]["angle_deg"], json({1, 3}));
   EXPECT_EQ(summary["results"][1]["wavelength_nm"], 633);
   EXPECT_EQ(summary["results"][3]["field"], 1);
+}
+
+// Of an eye every result says which one, and in which axes; Zernike coefficients are then the examiner's, who sees x mirrored.
+TEST(TraceCommand, says_which_eye_it_is_and_in_which_axes) {
+  const Folder folder;
+  const std::string eye = lens + "eye: left\n", options = " --rays 500 -o ";
+  const Outcome text = run_program("trace " + folder.file("eye.yaml", eye) + options + folder.path());
+  ASSERT_EQ(text.status, 0) << text.err;
+  EXPECT_THAT(text.out, HasSubstr("; left eye, x to the examiner's left, y up\n"));
+  const json of_eye = json::parse(read_text(folder.path("summary.json"))), of_lens = traced(folder.file("lens.yaml", lens), "--rays 500");
+  EXPECT_EQ(of_eye["eye"], "left");
+  EXPECT_EQ(of_eye["frame"], "x to the examiner's left, y up");
+  EXPECT_FALSE(of_lens.contains("eye"));
+  for (const char* file : {"spot.exr", "wavefront.exr"}) EXPECT_EQ(read_exr(folder.path(file))[1].text("eye"), "left, x to the examiner's left, y up");
+  const json &zernike = of_eye["results"][2]["wavefront"]["zernike"], &tracers = of_lens["results"][2]["wavefront"]["zernike"];
+  EXPECT_EQ(zernike["frame"], "left eye, OSA axes: x to the examiner's right, y up");
+  double odd = 0;
+  for (int n = 0, m = 0, j = 0; j < 36; ++j, m += 2) {
+    if (m > n) m = -++n;
+    const bool is_odd = m > 0 ? m % 2 != 0 : m < 0 && m % 2 == 0;  // cos(m t) of odd m, sin(m t) of even m
+    EXPECT_EQ(zernike["coefficients_um"][j].get<double>(), (is_odd ? -1 : 1) * tracers["coefficients_um"][j].get<double>()) << j;
+    if (is_odd) odd += std::abs(tracers["coefficients_um"][j].get<double>());
+  }
+  EXPECT_GT(odd, .01);  // the field has an x
 }
 
 TEST(TraceCommand, spot_file_holds_the_ray_counts_of_the_summary) {
