@@ -54,27 +54,30 @@ class CodeVReader {
 
  private:
   using Handler = void (CodeVReader::*)(const Statement&);
+  static constexpr std::size_t any = std::string::npos;
   struct Command {
     std::string_view name;
     Handler take;
+    std::size_t most_words;  // behind its name and surface
   };
 
   void take(Statement& statement) {
     using C = CodeVReader;
-    static constexpr std::array of_system{Command{"RDM", &C::take_radius_mode}, Command{"TIT", &C::take_title}, Command{"DIM", &C::take_unit}, Command{"EPD", &C::take_aperture},
-                                          Command{"FNO", &C::take_aperture}, Command{"NA", &C::take_aperture}, Command{"NAO", &C::take_aperture}, Command{"WL", &C::take_wavelengths},
-                                          Command{"REF", &C::take_reference}, Command{"XAN", &C::take_fields}, Command{"YAN", &C::take_fields}, Command{"XOB", &C::take_fields},
-                                          Command{"YOB", &C::take_fields}, Command{"XIM", &C::take_fields}, Command{"YIM", &C::take_fields}, Command{"XRI", &C::take_fields},
-                                          Command{"YRI", &C::take_fields}, Command{"VUX", &C::take_vignetting}, Command{"VLX", &C::take_vignetting}, Command{"VUY", &C::take_vignetting},
-                                          Command{"VLY", &C::take_vignetting}, Command{"TEM", &C::take_environment}, Command{"PRE", &C::take_environment}, Command{"PIM", &C::take_image_solve}};
-    static constexpr std::array of_surface{Command{"RDY", &C::take_radius}, Command{"CUY", &C::take_curvature}, Command{"THI", &C::take_thickness}, Command{"GLA", &C::take_glass},
-                                           Command{"RMD", &C::take_mode}, Command{"SLB", &C::take_name}, Command{"STO", &C::take_stop}, Command{"SPH", &C::take_sphere},
-                                           Command{"CON", &C::take_nothing}, Command{"ASP", &C::take_nothing}, Command{"K", &C::take_conic}, Command{"A", &C::take_power},
-                                           Command{"B", &C::take_power}, Command{"C", &C::take_power}, Command{"D", &C::take_power}, Command{"E", &C::take_power}, Command{"F", &C::take_power},
-                                           Command{"G", &C::take_power}, Command{"H", &C::take_power}, Command{"J", &C::take_power}, Command{"CUF", &C::take_fresnel},
-                                           Command{"CIR", &C::take_circle}, Command{"XDE", &C::take_decenter}, Command{"YDE", &C::take_decenter}, Command{"ZDE", &C::take_decenter},
-                                           Command{"ADE", &C::take_decenter}, Command{"BDE", &C::take_decenter}, Command{"CDE", &C::take_decenter}, Command{"DAR", &C::take_decenter_kind},
-                                           Command{"REV", &C::take_decenter_kind}, Command{"BEN", &C::take_decenter_kind}};
+    static constexpr std::array of_system{
+        Command{"RDM", &C::take_radius_mode, 1}, Command{"TIT", &C::take_title, any}, Command{"DIM", &C::take_unit, 1}, Command{"EPD", &C::take_aperture, 1},
+        Command{"FNO", &C::take_aperture, 1}, Command{"NA", &C::take_aperture, 1}, Command{"NAO", &C::take_aperture, 1}, Command{"WL", &C::take_wavelengths, any},
+        Command{"REF", &C::take_reference, 1}, Command{"XAN", &C::take_fields, any}, Command{"YAN", &C::take_fields, any}, Command{"XOB", &C::take_fields, any},
+        Command{"YOB", &C::take_fields, any}, Command{"XIM", &C::take_fields, any}, Command{"YIM", &C::take_fields, any}, Command{"XRI", &C::take_fields, any},
+        Command{"YRI", &C::take_fields, any}, Command{"VUX", &C::take_vignetting, any}, Command{"VLX", &C::take_vignetting, any}, Command{"VUY", &C::take_vignetting, any},
+        Command{"VLY", &C::take_vignetting, any}, Command{"TEM", &C::take_environment, 1}, Command{"PRE", &C::take_environment, 1}, Command{"PIM", &C::take_image_solve, 1}};
+    static constexpr std::array of_surface{
+        Command{"RDY", &C::take_radius, 1}, Command{"CUY", &C::take_curvature, 1}, Command{"THI", &C::take_thickness, 1}, Command{"GLA", &C::take_glass, 1},
+        Command{"RMD", &C::take_mode, 1}, Command{"SLB", &C::take_name, 1}, Command{"STO", &C::take_stop, 0}, Command{"SPH", &C::take_sphere, 0}, Command{"CON", &C::take_nothing, 0},
+        Command{"ASP", &C::take_nothing, 0}, Command{"K", &C::take_conic, 1}, Command{"A", &C::take_power, 1}, Command{"B", &C::take_power, 1}, Command{"C", &C::take_power, 1},
+        Command{"D", &C::take_power, 1}, Command{"E", &C::take_power, 1}, Command{"F", &C::take_power, 1}, Command{"G", &C::take_power, 1}, Command{"H", &C::take_power, 1},
+        Command{"J", &C::take_power, 1}, Command{"CUF", &C::take_fresnel, 1}, Command{"CIR", &C::take_circle, any}, Command{"XDE", &C::take_decenter, 1},
+        Command{"YDE", &C::take_decenter, 1}, Command{"ZDE", &C::take_decenter, 1}, Command{"ADE", &C::take_decenter, 1}, Command{"BDE", &C::take_decenter, 1},
+        Command{"CDE", &C::take_decenter, 1}, Command{"DAR", &C::take_decenter_kind, 0}, Command{"REV", &C::take_decenter_kind, 0}, Command{"BEN", &C::take_decenter_kind, 0}};
     const std::string given = statement.name();
     std::string& name = statement.words.front().text;
     name = command_name(given);
@@ -83,13 +86,20 @@ class CodeVReader {
       return;
     }
     const auto is_it = [&](const auto& one) { return one.name == name; };
-    if (const auto found = std::find_if(of_system.begin(), of_system.end(), is_it); found != of_system.end()) return (this->*found->take)(statement);
+    if (const auto found = std::find_if(of_system.begin(), of_system.end(), is_it); found != of_system.end()) {
+      (this->*found->take)(statement);
+      return leave_out_more(statement, found->most_words);
+    }
     target_ = surfaces_.size() - 1;
     if (const auto found = std::find_if(of_surface.begin(), of_surface.end(), is_it); found != of_surface.end()) {
-      if (take_qualifier(statement)) (this->*found->take)(statement);
-      return;
+      if (!take_qualifier(statement)) return;
+      (this->*found->take)(statement);
+      return leave_out_more(statement, found->most_words);
     }
-    if (is_surface_name(name)) return take_surface(statement);
+    if (is_surface_name(name)) {
+      take_surface(statement);
+      return leave_out_more(statement, 4);
+    }
     if (name == "PRV") {
       is_in_private_catalog_ = true;
       return report_.left_out(numbers_.place(statement), "PRV: a private catalogue of glasses", "give its glasses as files NAME.yml beside the prescription");
@@ -98,7 +108,13 @@ class CodeVReader {
     leave_out(given, name, other_apertures, numbers_.place(statement), report_);
   }
 
-  // A second word S3, SO or SI names the surface of the command, and is taken away. False, after saying so, for other qualifiers.
+  void leave_out_more(const Statement& statement, std::size_t most) {
+    if (statement.words.size() - 1 <= most) return;
+    const Word& more = statement.words[most + 1];
+    report_.left_out(numbers_.place(more), fmt::format("{}: '{}' is one word more than it takes", statement.name(), prescription::excerpt(more.text)), "the next command begins behind a semicolon or in its own line");
+  }
+
+  // A second word S3, SO, SI or S'label' names the surface of the command, and is taken away. False, after saying so, for other qualifiers.
   bool take_qualifier(Statement& statement) {
     if (statement.words.size() < 2 || statement.words[1].quoted) return true;
     const std::string word = upper(statement.words[1].text);
@@ -106,8 +122,9 @@ class CodeVReader {
       report_.left_out(numbers_.place(statement.words[1]), fmt::format("{}: zoom positions", statement.name()));
       return false;
     }
-    if (!is_surface_name(word)) return true;
-    const std::optional<std::size_t> number = surface_number(word);
+    const bool is_label = word.starts_with("S'") || word.starts_with("S\"");
+    if (!is_label && !is_surface_name(word)) return true;
+    const std::optional<std::size_t> number = is_label ? labelled(word) : surface_number(word);
     if (!number || *number >= surfaces_.size()) {
       report_.broken(numbers_.place(statement.words[1]), fmt::format("{}: there is no surface {} here", statement.name(), prescription::excerpt(statement.words[1].text)));
       return false;
@@ -115,6 +132,12 @@ class CodeVReader {
     target_ = *number;
     statement.words.erase(statement.words.begin() + 1);
     return true;
+  }
+  // Of S'IRIS' the surface whose label (SLB) is that, in whatever letters.
+  std::optional<std::size_t> labelled(const std::string& word) const {
+    const std::string label = word.substr(2, word.find(word[1], 2) - 2);
+    const auto found = std::find_if(surfaces_.begin(), surfaces_.end(), [&](const CodeVSurface& one) { return !label.empty() && upper(one.name) == label; });
+    return found == surfaces_.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - surfaces_.begin()));
   }
   // "S" and what is not a number: none.
   std::optional<std::size_t> surface_number(const std::string& name) const {
@@ -134,6 +157,8 @@ class CodeVReader {
     const std::string& name = statement.name();
     if (name == "SO" || name == "S0") {
       target_ = 0;
+    } else if (name == "SI" && has_image_) {
+      target_ = surfaces_.size() - 1;
     } else {
       const std::optional<std::size_t> number = name == "S" || name == "SI" ? surfaces_.size() : surface_number(name).value_or(0);
       if (*number == 0 || *number > surfaces_.size()) return report_.broken(at, fmt::format("{} where S{} comes next", prescription::excerpt(name), surfaces_.size()));
@@ -147,7 +172,7 @@ class CodeVReader {
     }
     if (statement.words.size() > 1) set_radius(statement, statement.words[1], is_radius_mode_);
     if (statement.words.size() > 2) set_thickness(statement, statement.words[2]);
-    for (std::size_t i = 3; i < statement.words.size(); ++i) set_glass(statement.words[i]);
+    for (std::size_t i = 3; i < std::min<std::size_t>(statement.words.size(), 5); ++i) set_glass(statement.words[i]);
   }
   void set_radius(const Statement& statement, const Word& word, bool is_radius) {
     const Real given = numbers_.number(word, statement.name()).value_or(0);
@@ -164,8 +189,11 @@ class CodeVReader {
   void set_glass(const Word& word) {
     const Place at = numbers_.place(word);
     const std::string name = upper(word.text);
-    if (!word.quoted && name == "REFL") return void(target().medium = {Medium::Kind::mirror, {}, 1, 0, {}, at});
-    if (!word.quoted && (name == "AIR" || name == "REFR")) return;
+    if (!word.quoted && (name == "REFL" || name == "REFR")) {
+      target().mirror_place = name == "REFL" ? std::optional(at) : std::nullopt;
+      return;
+    }
+    if (!word.quoted && name == "AIR") return void(target().medium = {});
     if (const std::optional<GlassCode> code = glass_code(word.text)) {
       target().medium = {Medium::Kind::nd_vd, {}, code->nd, code->vd, {}, at};
       if (!has_glass_code_) lens_.remarks.push_back("Glasses given as codes are two-term formulas through nd and Vd here.");
@@ -193,12 +221,13 @@ class CodeVReader {
     aperture_ = statement;
   }
   void take_wavelengths(const Statement& statement) {
-    lens_.wavelengths_nm.clear();
-    for (std::size_t i = 1; i < statement.words.size() && i <= static_cast<std::size_t>(most_wavelengths); ++i) {
+    lens_.wavelengths_nm.clear(), lens_.wavelength_places.clear();
+    if (statement.words.size() > static_cast<std::size_t>(most_wavelengths) + 1) return report_.broken(numbers_.place(statement), fmt::format("WL: more than {} wavelengths", most_wavelengths));
+    for (std::size_t i = 1; i < statement.words.size(); ++i) {
       const std::optional<Real> nm = numbers_.number(statement.words[i], statement.name());
       if (!nm) continue;
       if (!prescription::wavelengths_nm_range.contains(static_cast<double>(*nm))) report_.broken(numbers_.place(statement.words[i]), "WL: it is no wavelength in nm");
-      else lens_.wavelengths_nm.push_back(static_cast<double>(*nm));
+      else lens_.add_wavelength(static_cast<double>(*nm), numbers_.place(statement.words[i]));
     }
   }
   void take_reference(const Statement& statement) {
@@ -213,7 +242,7 @@ class CodeVReader {
     has_fields_ = true, lens_.field_kind = kind;
     std::vector<Real>& values = statement.name()[0] == 'X' ? x_fields_ : y_fields_;
     values = numbers_.list(statement, 1).value_or(std::vector<Real>{});
-    if (values.size() > static_cast<std::size_t>(most_fields)) values.resize(static_cast<std::size_t>(most_fields));
+    if (values.size() > static_cast<std::size_t>(most_fields)) report_.broken(lens_.fields_place, fmt::format("{}: more than {} fields", statement.name(), most_fields));
   }
   void take_vignetting(const Statement& statement) {
     const std::optional<std::vector<Real>> factors = numbers_.list(statement, 1);
@@ -244,8 +273,8 @@ class CodeVReader {
   }
   void take_mode(const Statement& statement) {
     const std::string mode = statement.words.size() < 2 ? "" : upper(statement.words[1].text);
-    if (mode == "REFL") return set_glass(statement.words[1]);
-    if (mode != "REFR") report_.left_out(numbers_.place(statement), fmt::format("RMD {}: neither REFR nor REFL", prescription::excerpt(mode)));
+    if (mode == "REFL" || mode == "REFR") return set_glass(statement.words[1]);
+    report_.left_out(numbers_.place(statement), fmt::format("RMD {}: neither REFR nor REFL", prescription::excerpt(mode)));
   }
   void take_name(const Statement& statement) {
     if (statement.words.size() > 1) target().name = statement.words[1].text;
@@ -271,12 +300,14 @@ class CodeVReader {
     if (value(statement) != 0) report_.left_out(numbers_.place(statement), "CUF: a Fresnel surface");
   }
   void take_circle(const Statement& statement) {
-    std::string kind = "CLR";
+    std::string kind;
     for (std::size_t i = 1; i + 1 < statement.words.size(); ++i) {
       const std::string word = upper(statement.words[i].text);
       if (word.starts_with("L'") || word.starts_with("L\"")) continue;  // a label
+      if (!kind.empty()) return report_.left_out(numbers_.place(statement.words[i]), fmt::format("CIR: '{}' is one word more than it takes", prescription::excerpt(word)), "the next command begins behind a semicolon or in its own line");
       kind = word;
     }
+    if (kind.empty()) kind = "CLR";
     const std::optional<Real> radius = numbers_.number(statement, std::max<std::size_t>(statement.words.size() - 1, 1));
     if (!radius || kind == "EDG") return;  // the edge of the glass, which lies outside what is clear
     if (kind != "CLR" && kind != "OBS") return report_.left_out(numbers_.place(statement), fmt::format("CIR {}: neither a clear aperture nor an obscuration", prescription::excerpt(kind)));
@@ -331,7 +362,7 @@ void CodeVReader::finish() {
     if (object.curvature != 0) report_.left_out(object.place.line > 0 ? object.place : object.thickness_place, "SO: a curved object");
   }
   lens_.object_medium = object.medium;
-  if (object.medium.kind == Medium::Kind::mirror) report_.broken(object.medium.place, "the object is a mirror");
+  if (object.mirror_place) report_.broken(*object.mirror_place, "the object is a mirror");
   if (object.decenter_place.line > 0) report_.left_out(object.decenter_place, "SO: a decentered object");
   for (std::size_t i = 1; i < surfaces_.size(); ++i) lens_.surfaces.push_back(surface_of(surfaces_[i], unit_, report_));
   Surface& image = lens_.surfaces.back();

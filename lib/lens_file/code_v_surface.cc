@@ -11,6 +11,10 @@ Surface surface_of(const CodeVSurface& given, Real unit_mm, Report& report) {
   using Decenter = CodeVSurface::Decenter;
   Surface surface;
   surface.place = given.place, surface.name = given.name, surface.stop = given.stop, surface.medium = given.medium;
+  if (given.mirror_place) {
+    if (given.medium.kind != Medium::Kind::air) report.left_out(given.medium.place, "the glass of a mirror", "light stays in the medium that it comes in");
+    surface.medium = {Medium::Kind::mirror, {}, 1, 0, {}, *given.mirror_place};
+  }
   surface.curvature = given.curvature / unit_mm;
   surface.thickness = given.thickness * unit_mm;
   const double radius = given.radius ? static_cast<double>(*given.radius * unit_mm) : radius_of(surface.curvature);

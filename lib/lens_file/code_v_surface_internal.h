@@ -25,7 +25,8 @@ struct CodeVSurface {
   Real curvature = 0, conic = 0, thickness = 0;
   Place conic_place, thickness_place;
   std::map<int, Real> powers;  // coefficients of powers of r
-  Medium medium;
+  Medium medium;                      // what follows, where no mirror stands
+  std::optional<Place> mirror_place;  // of a mirror, REFL
   Real semi_diameter = 0, inner_semi_diameter = 0;  // 0: none
   enum class Decenter { basic, and_return, reverse, bend } decenter = Decenter::basic;
   numerics::Vec3<Real> shift{}, tilt{};  // tilt as in the file

@@ -82,13 +82,13 @@ Findings in_order(const Findings& findings, const std::string& file) {
 }
 
 // A prescription traces each wavelength once.
-void merge_wavelengths(Lens& lens, const std::string& file, Report& report) {
+void merge_wavelengths(Lens& lens, Report& report) {
   std::vector<double> all;
   for (std::size_t i = 0; i < lens.wavelengths_nm.size(); ++i) {
     const double nm = lens.wavelengths_nm[i];
     const auto same = std::find(all.begin(), all.end(), nm);
     if (same == all.end()) all.push_back(nm);
-    else report.warning({file}, fmt::format("the wavelength {} nm is repeated; it is taken once", number_text(nm)));
+    else report.warning(lens.wavelength_places[i], fmt::format("the wavelength {} nm is repeated; it is taken once", number_text(nm)));
     if (i == lens.primary) lens.primary = static_cast<std::size_t>(std::find(all.begin(), all.end(), nm) - all.begin());
   }
   lens.wavelengths_nm = std::move(all);
@@ -107,7 +107,7 @@ Imported import(const ImportRequest& request) {
   }
   std::optional<Lens> lens = read_lens(request.file, report);
   if (lens && !lens->wavelengths_nm.empty()) {
-    merge_wavelengths(*lens, request.file, report);
+    merge_wavelengths(*lens, report);
     find_glasses(*lens, request.output, catalogs, report);
     if (!report.has_errors()) check(*lens, request.output, catalogs, report);
     if (!report.has_errors()) solve_paraxial_image(*lens, request.output, catalogs, report);

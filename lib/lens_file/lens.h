@@ -79,6 +79,7 @@ struct Lens {
   std::string program;  // "a Zemax lens file"
   std::string title;
   std::vector<double> wavelengths_nm;
+  std::vector<Place> wavelength_places;
   std::size_t primary = 0;  // place in wavelengths_nm
   std::optional<Aperture> aperture;
   bool aims = false;        // rays, at the stop
@@ -90,6 +91,11 @@ struct Lens {
   std::vector<Surface> surfaces;  // the last one is the image surface
   std::optional<Place> solves_image;  // the last thickness is to reach the paraxial image, besides `image_shift`, which it holds
   Real image_shift = 0;
+
+  void add_wavelength(double nm, Place place) {
+    wavelengths_nm.push_back(nm);
+    wavelength_places.push_back(std::move(place));
+  }
 
   // To the vertex of the next surface, as if no move turned the axis.
   Real axial_thickness(std::size_t i) const { return surfaces[i].thickness + (i + 1 < surfaces.size() ? surfaces[i + 1].thickness_before : 0); }

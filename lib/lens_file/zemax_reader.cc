@@ -154,18 +154,18 @@ class ZemaxReader {
   void add_wavelength(const Word& word, const std::string& of) {
     const std::optional<Real> um = numbers_.number(word, of);
     if (!um) return;
-    if (!prescription::wavelengths_nm_range.contains(static_cast<double>(*um * 1000)) || wavelengths_.size() >= static_cast<std::size_t>(most_wavelengths))
+    if (!prescription::wavelengths_nm_range.contains(static_cast<double>(*um * 1000)) || lens_.wavelengths_nm.size() >= static_cast<std::size_t>(most_wavelengths))
       return report_.broken(numbers_.place(word), fmt::format("{}: '{}' um is no wavelength", of, prescription::excerpt(word.text)));
-    wavelengths_.push_back(static_cast<double>(*um * 1000));
+    lens_.add_wavelength(static_cast<double>(*um * 1000), numbers_.place(word));
   }
   void take_wavelength(const Statement& statement) {
     const std::optional<int> number = numbers_.whole(statement, 1, 1, most_wavelengths);
     if (!number || !numbers_.number(statement, 2)) return;
-    if (*number != static_cast<int>(wavelengths_.size()) + 1) return report_.broken(numbers_.place(statement.words[1]), fmt::format("WAVM {} where {} comes next", *number, wavelengths_.size() + 1));
+    if (*number != static_cast<int>(lens_.wavelengths_nm.size()) + 1) return report_.broken(numbers_.place(statement.words[1]), fmt::format("WAVM {} where {} comes next", *number, lens_.wavelengths_nm.size() + 1));
     add_wavelength(statement.words[2], statement.name());
   }
   void take_wavelengths(const Statement& statement) {
-    wavelengths_.clear();
+    lens_.wavelengths_nm.clear(), lens_.wavelength_places.clear();
     for (std::size_t i = 1; i < statement.words.size(); ++i) add_wavelength(statement.words[i], statement.name());
   }
   void take_primary(const Statement& statement) { primary_ = {Real(numbers_.whole(statement, 1, 1, most_wavelengths).value_or(1)), numbers_.place(statement)}; }
@@ -278,7 +278,6 @@ class ZemaxReader {
   PlacedNumber field_type_, primary_{1, {}};
   std::optional<std::size_t> field_count_, wavelength_count_;
   std::vector<Real> x_fields_, y_fields_;
-  std::vector<double> wavelengths_;
   std::vector<Statement> vignetting_;
   std::vector<ZemaxSurface> surfaces_;
   int skipped_count_ = 0;
@@ -294,10 +293,9 @@ void ZemaxReader::finish() {
 }
 
 void ZemaxReader::finish_wavelengths() {
-  const std::size_t count = wavelength_count_.value_or(wavelengths_.size());
-  if (wavelengths_.empty() || count == 0 || count > wavelengths_.size())
-    return report_.broken({file_}, wavelengths_.empty() ? "no wavelength (WAVM, WAVL)" : fmt::format("FTYP tells of {} wavelengths, WAVM gives {}", count, wavelengths_.size()));
-  lens_.wavelengths_nm.assign(wavelengths_.begin(), wavelengths_.begin() + static_cast<std::ptrdiff_t>(count));
+  const std::size_t given = lens_.wavelengths_nm.size(), count = wavelength_count_.value_or(given);
+  if (given == 0 || count == 0 || count > given) return report_.broken({file_}, given == 0 ? "no wavelength (WAVM, WAVL)" : fmt::format("FTYP tells of {} wavelengths, WAVM gives {}", count, given));
+  lens_.wavelengths_nm.resize(count);
   if (!(primary_.value >= 1 && primary_.value <= Real(count))) return report_.broken(primary_.place, fmt::format("PWAV: there are {} wavelengths", count));
   lens_.primary = static_cast<std::size_t>(primary_.value) - 1;
 }
@@ -325,6 +323,8 @@ void ZemaxReader::finish_surfaces() {
   if (!object.infinite) lens_.object_distance = static_cast<double>(object.thickness.value * unit_);
   if (object.curvature.value != 0) report_.left_out(object.curvature.place, "a curved object");
   if (object.is_coordinate_break()) report_.left_out(object.type_place, "an object that is a coordinate break");
+  else if (object.type != "STANDARD") report_.left_out(object.type_place, fmt::format("an object of type {}", prescription::excerpt(object.type)));
+  if (object.clip) report_.left_out(object.clip->place, fmt::format("{}: an aperture of the object", object.clip->operand));
   if (object.stop) report_.broken(object.place, "the object is the stop");
   lens_.object_medium = object.medium;
   if (object.medium.kind == Medium::Kind::mirror) report_.broken(object.medium.place, "the object is a mirror");

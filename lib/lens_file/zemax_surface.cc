@@ -230,6 +230,8 @@ Surface surface_of(const ZemaxSurface& given, Real unit_mm, Report& report) {
     surface.shape = type->shape(reader);
     if (given.grid && type->shape != grid) report.left_out(given.grid->place.value_or(given.place), fmt::format("heights on a grid (GDAT, GARR) of a surface of type {}", given.type));
     if (type->gradient) {
+      if (given.medium.kind == Medium::Kind::mirror) report.left_out(given.medium.place, "GLAS: a mirror that a gradient-index medium follows");
+      else if (given.medium.kind != Medium::Kind::air) report.warning(given.medium.place, "GLAS of a gradient-index medium is left out: the index is that of the gradient");
       surface.medium = {Medium::Kind::gradient, {}, 1, 0, type->gradient(reader), given.type_place};
       const double index = std::get<double>(surface.medium.gradient.items.front().value);
       if (!(index >= medium::least_index && index <= medium::largest_index))

@@ -139,6 +139,26 @@ TEST(CodeVImageSolve, finds_the_paraxial_image) {
   EXPECT_THAT(import_text("lens.seq", finite).prescription, HasSubstr("thickness_mm: -100,"));
 }
 
+// 2026-11-23: a later AIR left the glass, a later glass took the mirror away, a later REFR left it.
+TEST(CodeVFile, has_glasses_and_mirrors_that_later_commands_change) {
+  const auto import_surface = [](const std::string& surface) { return import_text("lens.seq", sequence("S 50 4 NBK7_SCHOTT\nSTO\n" + surface + "\nSI 0 0\n")); };
+  EXPECT_THAT(import_surface("S -50 40 NBK7_SCHOTT; GLA S2 AIR").prescription, HasSubstr("{conic: {radius_mm: -50}, thickness_mm: 40}"));
+  EXPECT_THAT(import_surface("S -50 -40; GLA NBK7_SCHOTT; RMD REFL; GLA AIR").prescription, HasSubstr("thickness_mm: -40, medium: mirror}"));
+  EXPECT_THAT(import_surface("S -50 40 REFL; RMD S2 REFR").prescription, HasSubstr("{conic: {radius_mm: -50}, thickness_mm: 40}"));
+  for (const char* both : {"S -50 -40 REFL NBK7_SCHOTT", "S -50 -40 REFL; GLA NBK7_SCHOTT"}) EXPECT_THAT(import_surface(both).messages, HasSubstr("error: the glass of a mirror\n")) << both;
+}
+
+TEST(CodeVFile, may_name_surfaces_by_their_labels) {
+  const auto prescription = import_text("lens.seq", sequence("S 50 4 NBK7_SCHOTT\nSLB 'front'\nS -50 3\nSLB \"Iris\"\nSI 0 0\nSTO S'iris'\nTHI S'front' 5\n")).prescription;
+  EXPECT_THAT(prescription, HasSubstr("{name: front, conic: {radius_mm: 50}, thickness_mm: 5, medium: N-BK7}"));
+  EXPECT_THAT(prescription, HasSubstr("{name: Iris, stop: true, conic: {radius_mm: -50}"));
+}
+
+TEST(CodeVFile, may_come_back_to_its_image_surface) {
+  const std::string lens = "S 50 4 NBK7_SCHOTT\nSTO\nS -50 40\n";
+  EXPECT_EQ(import_text("lens.seq", sequence(lens + "SI 0 0\nSI 0 -0.1\n")).prescription, import_text("lens.seq", sequence(lens + "SI 0 -0.1\n")).prescription);
+}
+
 TEST(CodeVFile, has_defaults_that_are_told) {
   std::string text = sequence("S 50 4 NBK7_SCHOTT\nS 0 3\nSI 0 0\n");
   text.replace(text.find("REF   2"), 7, "");

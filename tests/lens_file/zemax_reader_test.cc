@@ -233,7 +233,7 @@ TEST(ZemaxFile, may_repeat_a_wavelength) {
   text.replace(text.find("FTYP 0 0 1 1"), 12, "FTYP 0 0 1 3");
   text.replace(text.find("PWAV 1"), 6, "PWAV 3");
   const Outcome run = import_text("lens.zmx", text);
-  EXPECT_EQ(run.messages, "lens.zmx:1:1: warning: the wavelength 550 nm is repeated; it is taken once\n");
+  EXPECT_EQ(run.messages, "lens.zmx:21:8: warning: the wavelength 550 nm is repeated; it is taken once\n");
   EXPECT_THAT(run.prescription, HasSubstr("wavelengths_nm: [543, 550]\nprimary_nm: 550\n"));
 }
 
