@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -85,6 +86,7 @@ std::optional<Power> over_entrance_pupil(const trace::Launcher& launcher, double
 }
 
 constexpr double pupil_step = .05;  // h of (5) and of the differences of (6), of the pupil's radius
+constexpr double most_rounding = 1e-3;  // D: of (5), beyond which there is none
 constexpr int passes = 3;           // of (5): each leaves some H^2 of what there is between the pupils, 1e-2 of an H of 10 D at first
 
 // (1) by (5), along 0, 45, 90 and 135 degrees, at the entrance pupil and in the tracer's frame.
@@ -173,7 +175,10 @@ RefractionResult refraction(const scene::Scene& scene, const scene::Wavelength& 
   if (scene.pupil.telecentric) return {{}, "the entrance pupil is at infinity"};
   const ReferenceResult reference = reference_sphere(scene, wavelength, field);
   if (!reference.reason.empty()) return {{}, reference.reason};
-  const double index = wavelength.index.front();
+  // (5) divides paths, each rounded to some 8 epsilons, by the square of the step
+  const double index = wavelength.index.front(), step = pupil_step * scene.pupil.semi_diameter;
+  const double rounding = 1e3 * 8 * std::numeric_limits<double>::epsilon() * std::abs(reference.sphere.opl_chief) / (step * step);
+  if (!(rounding <= most_rounding)) return {{}, "the pupil is too small: rounding alone would make a thousandth of a dioptre"};
   const trace::Launcher launcher(scene, field, wavelength);
   const trace::PupilPoint chief = launcher.at_entrance_pupil(std::vector<trace::PupilPoint>{{0, 0}}).points.front();
   const LineOfSight line = line_of_sight(scene, field, chief, index);

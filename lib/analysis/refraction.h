@@ -20,16 +20,18 @@
 //                   so that M = (-4 sqrt3 c20 + 12 sqrt5 c40 - 24 sqrt7 c60 + ...)/r^2. As good as the terms are
 //   paraxial        W's own curvatures at the pupil's centre, from 17 rays within a tenth of the pupil:
 //                   W'' = (16 E(h) - E(2h))/(6 h^2) + O(h^4),   E the even part of W                                 (5)
-//                   and once more with light of vergence P, in which W is flat: then it does not matter how well the pupils are each other's image
+//                   and again, three passes in all, with light of vergence P, in which W is flat: then it does not matter how well the pupils are each
+//                   other's image
 //   far point       by places alone, no path: rays near the chief ray land at r = B p + C s, p the place in the pupil and s the slope
 //                   they start with; the vergence that brings all p to r = 0 is s = -C^-1 B p, so P = n C^-1 B       (6)
 //
 // Frame: OSA's, for the report of an eye: examiner facing the patient, u to the examiner's right, v up, axis anticlockwise from u. In the tracer's
 // frame, z into the eye and y up, x is to the examiner's left: J45 changes sign.
 //
-// Error: (5) and (6) some 1e-7 D, from the digits of W and the differences' sixth order. Off axis, and where the x and the y section have other pupils, the
+// Error: (5) and (6) agree to some 1e-6 D, 4e-6 at 60 degrees, 1e-3 at 80: the differences' sixth order. Rounding adds 4e-12 D mm^2 over the pupil's area,
+// some 1e-12 D for 2 mm; where it would be 1e-3 D (a pupil of some micrometres) there is none. Off axis, and where the x and the y section have other pupils, the
 // exit pupil that W is measured in is not where the entrance pupil is seen along the chief ray; that costs the first two some H^2 of the distance between them:
-// .001 D of an eye of 4 D at 30 degrees, .03 D at 60. A near object has its part in H.
+// .001 D of an eye of 4 D at 30 degrees, .03 D at 60, and nearly all at 80 (-70 for -39 D in Navarro's eye). A near object has its part in H.
 //
 // Source: Thibos, Wheeler and Horner, Optom. Vis. Sci. 74, 367 (1997), for (2) and (3); Keating, Am. J. Optom. Physiol. Opt. 58, 810 (1981), for matrices
 // and (4); ANSI Z80.28-2017 for the frame.

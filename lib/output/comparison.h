@@ -41,6 +41,9 @@ struct Comparison {
 // navarro-eye-zernike-cornea. "system" where nothing is left.
 std::string slug_of(const std::string& name);
 
+// "left eye" where all are; "A: left eye, B: right eye"; "" where none says.
+std::string eyes_of(const Comparison& comparison);
+
 std::string summary_json(const Comparison& comparison);
 std::string summary_text(const Comparison& comparison);
 

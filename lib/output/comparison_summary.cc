@@ -2,6 +2,7 @@
 // A comparison as JSON and as tables.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "lib/numerics/zernike_basis.h"
@@ -18,8 +19,13 @@ using surface::Status;
 
 constexpr std::size_t highest_shown = 15;  // Zernike terms of orders 0 to 4
 
-// Both systems' coefficients are told in the frame of the first.
-ordered_json difference_json(const Report& first, const Report& report, std::size_t i, const analysis::Difference& difference) {
+// The report by whose frame coefficients are told: that of the first system that has an eye, if there is one.
+const Report& framing(const Comparison& comparison) {
+  const auto eye = std::find_if(comparison.systems.begin(), comparison.systems.end(), [](const ComparedSystem& one) { return !one.report.eye.empty(); });
+  return (eye == comparison.systems.end() ? comparison.systems.front() : *eye).report;
+}
+
+ordered_json difference_json(const Report& framed, const Report& report, std::size_t i, const analysis::Difference& difference) {
   ordered_json json = place_json(report, report.results[i]);
   json["spot"] = {{"rms_radius_difference_um", 1e3 * difference.spot.rms_radius},
                   {"rms_radius_difference_percent", difference.spot.rms_radius_percent},
@@ -35,8 +41,8 @@ ordered_json difference_json(const Report& first, const Report& report, std::siz
                          {"samples_only_in_this", wavefront->only_in_other},
                          {"zernike", nullptr}};
     if (!wavefront->zernike_um.empty()) {
-      json["wavefront"]["zernike"] = {{"indexing", "osa"}, {"coefficients_um", in_frame_of(first, wavefront->zernike_um)}};
-      if (!first.eye.empty()) json["wavefront"]["zernike"]["frame"] = osa_frame_of(first);
+      json["wavefront"]["zernike"] = {{"indexing", "osa"}, {"coefficients_um", in_frame_of(framed, wavefront->zernike_um)}};
+      if (!framed.eye.empty()) json["wavefront"]["zernike"]["frame"] = osa_axes(framed);
     }
   } else {
     json["reason"] = "one of the two has no wavefront";
@@ -92,7 +98,7 @@ Table zernike_table(const Comparison& comparison, std::size_t i) {
     const auto& wavefront = system.report.results[i].wavefront->wavefront;
     if (!wavefront || !wavefront->zernike) continue;
     table.columns.push_back({system.report.system, "um"});
-    columns.push_back(in_frame_of(comparison.systems.front().report, wavefront->zernike->coefficients));
+    columns.push_back(in_frame_of(framing(comparison), wavefront->zernike->coefficients));
     term_count = std::max(term_count, columns.back().size());
   }
   if (columns.empty()) return {};
@@ -130,6 +136,15 @@ std::vector<std::string> cautions(const Comparison& comparison, const ComparedSy
 
 }  // namespace
 
+std::string eyes_of(const Comparison& comparison) {
+  const std::string eye = framing(comparison).eye;
+  if (eye.empty()) return {};
+  if (std::all_of(comparison.systems.begin(), comparison.systems.end(), [&](const ComparedSystem& one) { return one.report.eye == eye; })) return eye + " eye";
+  std::vector<std::string> all;
+  for (const ComparedSystem& one : comparison.systems) all.push_back(printable(one.report.system, 80) + (one.report.eye.empty() ? ": eye not said" : fmt::format(": {} eye", one.report.eye)));
+  return fmt::format("{}", fmt::join(all, ", "));
+}
+
 std::string summary_json(const Comparison& comparison) {
   const ComparedSystem& first = comparison.systems.front();
   ordered_json json{{"comparison", comparison.title},
@@ -146,7 +161,7 @@ std::string summary_json(const Comparison& comparison) {
     if (&system == &first) continue;
     ordered_json of{{"system", system.report.system}, {"from", first.report.system}, {"results", ordered_json::array()}};
     for (std::size_t i = 0; i < system.differences.size(); ++i)
-      of["results"].push_back(difference_json(first.report, system.report, i, system.differences[i]));
+      of["results"].push_back(difference_json(framing(comparison), system.report, i, system.differences[i]));
     json["differences"].push_back(std::move(of));
   }
   return text_of(json);
@@ -162,7 +177,7 @@ std::string summary_text(const Comparison& comparison) {
     const std::size_t i = field * first.wavelengths_nm.size() + comparison.primary;
     const Table table = zernike_table(comparison, i);
     if (!table.rows.empty())
-      text += fmt::format("\nZernike coefficients (osa) of the wavefronts, {}{}\n\n{}", panel_title(first, first.results[i]), first.eye.empty() ? "" : "; " + osa_frame_of(first), to_text(table));
+      text += fmt::format("\nZernike coefficients (osa) of the wavefronts, {}{}\n\n{}", panel_title(first, first.results[i]), framing(comparison).eye.empty() ? "" : fmt::format("; {}, {}", eyes_of(comparison), osa_axes(framing(comparison))), to_text(table));
   }
   std::string below;
   for (const ComparedSystem& system : comparison.systems) {

@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "lib/output/report_internal.h"
 #include "lib/output/summary_internal.h"
 #include "lib/output/text.h"
 
@@ -25,6 +26,11 @@ std::string plane_of(const RefractionReport& report) {
 std::string eye_of(const RefractionReport& report) {
   if (!report.is_eye) return "no eye, for its image is in air: the image surface is taken for the retina";
   return report.system.eye.empty() ? "which eye is not said (`eye: right` or `left` in the prescription)" : report.system.eye + " eye";
+}
+// "" where there is nothing to say.
+std::string facets_note_of(const Report& system) {
+  const std::string facets = flat_facets(system);
+  return facets.empty() ? "" : facets + "refractions, whose rays near the chief ray meet single facets: take c1";
 }
 constexpr const char* frame = "OSA axes: x to the examiner's right, y up, the axis anticlockwise from x";
 
@@ -89,6 +95,7 @@ std::string refraction_text(const RefractionReport& report) {
   for (std::size_t field = 0; field < chromatic.size(); ++field)
     if (const auto& one = chromatic[field])
       below += fmt::format("longitudinal chromatic aberration of field {}: {} D from {:g} to {:g} nm (paraxial M)\n", field, dioptres(one->dioptres), one->shortest_nm, one->longest_nm);
+  if (const std::string note = facets_note_of(system); !note.empty()) below += note + "\n";
   return fmt::format("{}: refraction at {}; {}\n{}; entrance pupil {} mm wide\n\n{}{}{}", printable(system.system, 200), plane_of(report), eye_of(report), frame,
                      significant(2 * system.first_order.entrance_pupil.semi_diameter), to_text(table), below.empty() ? "" : "\n", below);
 }
@@ -146,6 +153,7 @@ std::string refraction_json(const RefractionReport& report) {
     else one["reason"] = result.reason;
     json["results"].push_back(std::move(one));
   }
+  if (const std::string note = facets_note_of(system); !note.empty()) json["note"] = note;
   const auto chromatic = chromatic_differences(report);
   for (std::size_t field = 0; field < chromatic.size(); ++field)
     if (const auto& one = chromatic[field])

@@ -24,8 +24,10 @@ Panel pupil_panel(const Report& report, int size, const std::vector<double>& opd
 
 // Of an eye: the frame of spots, pictures and maps.
 inline constexpr const char* tracers_frame = "x to the examiner's left, y up";
-// "right eye, x to the examiner's left, y up; sagitta 0.1.0"
-std::string pictures_footer(const Report& report);
+// "right eye, x to the examiner's left, y up; sagitta 0.1.0"; without eyes "sagitta 0.1.0".
+std::string pictures_footer(const std::string& eyes, const std::string& version);
+// "surface 1 cornea: flat facets (interpolation: linear) are unusable for "; "" where no facets are flat.
+std::string flat_facets(const Report& report);
 
 // "" where wavefronts are to be trusted, or none are there.
 std::string facets_note(const Report& report);

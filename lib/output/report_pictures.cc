@@ -24,6 +24,8 @@ std::string field_label(const Report& report, std::size_t field) {
   return report.fields_are_heights ? fmt::format("object ({:g}, {:g}) mm", x, y) : fmt::format("field ({:g}°, {:g}°)", x, y);
 }
 
+std::string footer(const Report& report) { return pictures_footer(report.eye.empty() ? "" : report.eye + " eye", report.version); }
+
 }  // namespace
 
 std::string part_name(const Report& report, const analysis::JobResult& result, const char* quantity) {
@@ -86,7 +88,7 @@ std::vector<ExrPart> wavefront_parts(const Report& report) {
     const analysis::Wavefront& wavefront = *result.wavefront->wavefront;
     ExrPart part{part_name(report, result, "wavefront"), wavefront.size, wavefront.size,
                  {{"Y", floats(wavefront.opd_waves)}, {"wavefront.mask", wavefront.mask}}, common_attributes(report, result, result.wavefront->rays)};
-    part.attributes.push_back({"quantity", "optical path difference over the entrance pupil"});
+    part.attributes.push_back({"quantity", report.pupil_is_of_stop ? "optical path difference over the stop" : "optical path difference over the entrance pupil"});
     part.attributes.push_back({"sign", "OPD = OPL(chief ray) - OPL(ray), both to the reference sphere"});
     part.attributes.push_back({"mask", "0 ok, 1 missed, 2 clipped, 3 total_reflection, 4 outside_data, 5 not_converged, 255 outside the pupil"});
     for (ExrAttribute& attribute : pupil_map_attributes(report, wavefront.size)) part.attributes.push_back(std::move(attribute));
@@ -150,29 +152,35 @@ Panel wavefront_panel(const Report& report, const analysis::JobResult& result) {
 }
 
 Figure spot_figure(const Report& report) {
-  Figure figure{"Spots: " + report.system, "circle: RMS radius about the centroid; " + pictures_footer(report), {}, static_cast<int>(std::min<std::size_t>(3, report.wavelengths_nm.size()))};
+  Figure figure{"Spots: " + report.system, "circle: RMS radius about the centroid; " + footer(report), {}, static_cast<int>(std::min<std::size_t>(3, report.wavelengths_nm.size()))};
   if (report.wavelengths_nm.size() == 1) figure.columns = static_cast<int>(std::min<std::size_t>(3, report.fields.size()));
   for (const auto& result : report.results) figure.panels.push_back(spot_panel(report, result));
   return figure;
 }
 
 Figure wavefront_figure(const Report& report) {
-  Figure figure{"Wavefronts, OPD = OPL(chief) − OPL(ray): " + report.system, pictures_footer(report), {}, 3};
+  Figure figure{"Wavefronts, OPD = OPL(chief) − OPL(ray): " + report.system, footer(report), {}, 3};
   figure.columns = static_cast<int>(std::min<std::size_t>(3, report.wavelengths_nm.size() == 1 ? report.fields.size() : report.wavelengths_nm.size()));
   for (const auto& result : report.results) figure.panels.push_back(wavefront_panel(report, result));
   return figure;
 }
 
-std::string pictures_footer(const Report& report) {
-  return (report.eye.empty() ? "" : fmt::format("{} eye, {}; ", report.eye, tracers_frame)) + "sagitta " + report.version;
+std::string pictures_footer(const std::string& eyes, const std::string& version) {
+  return (eyes.empty() ? "" : fmt::format("{}, {}; ", eyes, tracers_frame)) + "sagitta " + version;
 }
 
-std::string facets_note(const Report& report) {
-  if (report.surfaces_of_flat_facets.empty() || report.results.empty() || !report.results.front().wavefront) return {};
+std::string flat_facets(const Report& report) {
+  if (report.surfaces_of_flat_facets.empty()) return {};
   std::vector<std::string> names;
   for (const int number : report.surfaces_of_flat_facets)
     names.push_back(fmt::format("surface {} {}", number, report.surface_names[static_cast<std::size_t>(number - 1)]));
-  return fmt::format("{}: flat facets (interpolation: linear) are unusable for wavefronts, wrong by about a wave: take c1", fmt::join(names, ", "));
+  return fmt::format("{}: flat facets (interpolation: linear) are unusable for ", fmt::join(names, ", "));
+}
+
+std::string facets_note(const Report& report) {
+  const std::string facets = flat_facets(report);
+  if (facets.empty() || report.results.empty() || !report.results.front().wavefront) return {};
+  return facets + "wavefronts, wrong by about a wave: take c1";
 }
 
 }  // namespace sagitta::output

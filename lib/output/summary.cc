@@ -78,7 +78,7 @@ ordered_json wavefront_json(const Report& report, const analysis::WavefrontResul
                          {"pupil_semi_diameter_mm", report.first_order.entrance_pupil.semi_diameter},
                          {"coefficients_um", in_frame_of(report, wavefront.zernike->coefficients)},
                          {"residual_rms_um", wavefront.zernike->residual_rms}};
-    if (!report.eye.empty()) result["zernike"]["frame"] = osa_frame_of(report);
+    if (!report.eye.empty()) result["zernike"]["frame"] = report.eye + " eye, " + osa_axes(report);
   }
   return result;
 }
@@ -130,7 +130,9 @@ ordered_json place_json(const Report& report, const analysis::JobResult& result)
   return json;
 }
 
-std::string osa_frame_of(const Report& report) { return report.eye + " eye, OSA axes: x to the examiner's right, y up"; }
+std::string osa_axes(const Report& report) {
+  return report.pupil_is_of_stop ? "OSA axes over the stop: x against the stop's own x (to the examiner's right unless the stop is turned), y along its y" : "OSA axes: x to the examiner's right, y up";
+}
 
 std::vector<double> in_frame_of(const Report& report, std::vector<double> osa) {
   for (std::size_t j = 0; j < osa.size() && !report.eye.empty(); ++j) {

@@ -20,7 +20,7 @@ std::string text_of(const nlohmann::ordered_json& json);
 
 // OSA's Zernike coefficients of a wavefront as they are told of `report`: with an eye in the examiner's frame, where what is odd in x has the other sign.
 std::vector<double> in_frame_of(const Report& report, std::vector<double> osa);
-std::string osa_frame_of(const Report& report);  // that frame, of a report with an eye
+std::string osa_axes(const Report& report);  // that frame
 
 // Five digits; "-" for a number that does not exist.
 std::string significant(double value);

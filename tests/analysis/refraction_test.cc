@@ -51,6 +51,26 @@ TEST(Refraction, aphakic_eye_of_two_sections_wants_their_lenses) {
     EXPECT_NEAR(power.vv, 1336 / 24.0 - 336 / 7.5, 1e-5);
   }
 }
+// 2026-11-23: -1.59 for -1.61 D with a pupil of a micrometre, +305 with a nanometre.
+TEST(Refraction, has_its_digits_or_none_whatever_the_size_of_the_pupil) {
+  const auto read = prescription::read_prescription(SAGITTA_SOURCE_DIR "/systems/biconic-test-eye.yaml");
+  ASSERT_TRUE(read.model);
+  int found = 0;
+  for (const double stop : {1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-6}) {
+    prescription::Model eye = *read.model;
+    ASSERT_EQ(eye.aperture.kind, prescription::ApertureKind::stop_diameter_mm);
+    eye.aperture.value = stop;
+    const CompiledScene compiled = checked(scene::compile(eye));
+    const auto result = analysis::refraction(compiled.scene, compiled.scene.wavelengths[0], compiled.scene.fields[0], {});
+    if (!result.refraction) {
+      EXPECT_EQ(result.reason, "the pupil is too small: rounding alone would make a thousandth of a dioptre");
+      continue;
+    }
+    ++found;
+    for (const Power& power : {result.refraction->paraxial, result.refraction->far_point}) expect_power(power, -1.40335, .77789, 0, 1e-3);
+  }
+  EXPECT_EQ(found, 3);
+}
 // 2026-11-23: M -1.4108 and J0 +.7704 with the object at 30 mm, for -1.40335 and +.77789 from infinity.
 TEST(Refraction, does_not_depend_on_where_the_object_stands) {
   const auto read = prescription::read_prescription(SAGITTA_SOURCE_DIR "/systems/biconic-test-eye.yaml");

@@ -55,7 +55,7 @@ TEST(CompareCommand, of_eyes_has_coefficients_in_the_examiners_frame) {
   const Folder folder;
   const json summary = compared(folder.file("a.yaml", lens("a") + "eye: right\n") + " " + folder.file("b.yaml", lens("b", {}, ", tilt_deg: [0, 2, 0]") + "eye: right\n") + " --rays 300");
   const json &difference = summary["differences"][0]["results"][0]["wavefront"]["zernike"];
-  EXPECT_EQ(difference["frame"], "right eye, OSA axes: x to the examiner's right, y up");
+  EXPECT_EQ(difference["frame"], "OSA axes: x to the examiner's right, y up");
   for (std::size_t j = 0; j < 36; ++j) {
     const auto of = [&](std::size_t system) { return summary["systems"][system]["results"][0]["wavefront"]["zernike"]["coefficients_um"][j].get<double>(); };
     EXPECT_EQ(difference["coefficients_um"][j].get<double>(), of(1) - of(0)) << j;
@@ -63,6 +63,16 @@ TEST(CompareCommand, of_eyes_has_coefficients_in_the_examiners_frame) {
       EXPECT_GT(std::abs(of(1)), .01);  // tilt in x
     }
   }
+}
+
+TEST(CompareCommand, of_a_left_and_a_right_eye_says_which_is_which) {
+  const Folder folder;
+  const std::string left = folder.file("a.yaml", lens("a") + "eye: left\n"), right = folder.file("b.yaml", lens("b") + "eye: right\n"), none = folder.file("c.yaml", lens("c"));
+  const auto said = [&](const std::string& files) { return run_program("compare " + files + " --rays 300 -o " + folder.path("out")).out; };
+  const std::string axes = ", OSA axes: x to the examiner's right, y up\n";
+  EXPECT_THAT(said(left + " " + left), HasSubstr("; left eye" + axes));
+  EXPECT_THAT(said(left + " " + right), HasSubstr("; a: left eye, b: right eye" + axes));
+  EXPECT_THAT(said(none + " " + right), HasSubstr("; c: eye not said, b: right eye" + axes));
 }
 
 TEST(CompareCommand, the_first_systems_numbers_are_those_of_trace) {

@@ -46,6 +46,14 @@ TEST(RefractionCommand, tells_and_draws_the_chromatic_aberration) {
   EXPECT_THAT(read_text(folder.path("new/spectrum.svg")), HasSubstr("<title>Refraction of "));
 }
 
+// 2026-11-23: +58.2 D (paraxial) and +64.0 D (far point) of an eye of +.12 D, without a word.
+TEST(RefractionCommand, says_that_flat_facets_are_no_use) {
+  const std::string note = "surface 1 anterior cornea: flat facets (interpolation: linear) are unusable for refractions";
+  EXPECT_THAT(run_program("refraction " + systems + "cornea-delaunay.yaml").out, HasSubstr(note));
+  EXPECT_THAT(refraction(systems + "cornea-delaunay.yaml")["note"].get<std::string>(), HasSubstr(note));
+  EXPECT_FALSE(refraction(systems + "cornea-zernike.yaml").contains("note"));
+}
+
 TEST(RefractionCommand, refuses_what_it_cannot_draw_or_reach) {
   const Folder folder;
   const Outcome gif = run_program("refraction " + systems + "le-grand-eye.yaml -o " + folder.path("a.gif"));
