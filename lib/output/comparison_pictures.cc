@@ -88,7 +88,7 @@ Figure sheet(const Comparison& comparison, std::size_t field) {
   Figure figure{fmt::format("{}: {}", comparison.title, panel_title(first, first.results[i])),
                 fmt::format("A row for each system, by the rays of the first. Spots at one scale, circle: RMS radius about the centroid. "
                             "OPD = OPL(chief) − OPL(ray), each to its own reference sphere; one colour scale for the wavefronts, "
-                            "one for the differences, drawn without piston and tilt. {}", pictures_footer(eyes_of(comparison), first.version)),
+                            "one for the differences, drawn without piston and tilt; {}", pictures_footer(eyes_of(comparison), first.version)),
                 {}, 3};
   double largest_rms = 0;
   for (const ComparedSystem& system : comparison.systems)

@@ -21,6 +21,7 @@ using nlohmann::ordered_json;
 
 std::string plane_of(const RefractionReport& report) {
   if (report.vertex_distance_mm == 0) return report.is_eye ? "the cornea's vertex plane" : "the vertex plane of surface 1";
+  if (report.vertex_distance_mm < 0) return fmt::format("the plane {:g} mm behind the vertex of {}", -report.vertex_distance_mm, report.is_eye ? "the cornea" : "surface 1");
   return fmt::format("the {}plane {:g} mm before {}", report.is_eye ? "spectacle " : "", report.vertex_distance_mm, report.is_eye ? "the cornea" : "surface 1");
 }
 std::string eye_of(const RefractionReport& report) {
