@@ -313,6 +313,7 @@ class CodeVReader {
     if (kind != "CLR" && kind != "OBS") return report_.left_out(numbers_.place(statement), fmt::format("CIR {}: neither a clear aperture nor an obscuration", prescription::excerpt(kind)));
     if (!(*radius > 0)) return report_.broken(numbers_.place(statement), "CIR: the radius is not positive");
     (kind == "OBS" ? target().inner_semi_diameter : target().semi_diameter) = *radius;
+    target().circle_place = numbers_.place(statement);
   }
   void take_decenter(const Statement& statement) {
     numerics::Vec3<Real>& to = statement.name()[1] == 'D' && statement.name()[0] >= 'X' ? target().shift : target().tilt;

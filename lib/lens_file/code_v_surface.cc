@@ -26,6 +26,7 @@ Surface surface_of(const CodeVSurface& given, Real unit_mm, Report& report) {
     if (given.conic != 0) surface.shape.items.push_back({"conic_constant", static_cast<double>(given.conic)});
     if (!coefficients.empty()) surface.shape.items.push_back({"coefficients", coefficients});
   }
+  if (given.semi_diameter != 0 && !(given.inner_semi_diameter < given.semi_diameter)) report.broken(given.circle_place, "CIR: the obscuration is not smaller than the clear aperture");
   if (given.semi_diameter != 0) surface.semi_diameter = static_cast<double>(given.semi_diameter * unit_mm);
   surface.inner_semi_diameter = static_cast<double>(given.inner_semi_diameter * unit_mm);
   if (given.decenter_place.line == 0) return surface;

@@ -28,6 +28,7 @@ struct CodeVSurface {
   Medium medium;                      // what follows, where no mirror stands
   std::optional<Place> mirror_place;  // of a mirror, REFL
   Real semi_diameter = 0, inner_semi_diameter = 0;  // 0: none
+  Place circle_place;
   enum class Decenter { basic, and_return, reverse, bend } decenter = Decenter::basic;
   numerics::Vec3<Real> shift{}, tilt{};  // tilt as in the file
   Place decenter_place;
