@@ -196,8 +196,8 @@ void clip(const ZemaxSurface& given, Real unit, Report& report, Surface& surface
   if (!given.clip) return;
   const auto& [operand, least, most, at] = *given.clip;
   if (given.clip_is_off_centre) return report.left_out(at, operand + ": an aperture off the vertex (OBDC) is not one here");
-  if (!(least >= 0 && most >= least)) return report.broken(at, operand + ": its radii are not 0 <= least <= largest");
-  if (most == 0) return report.warning(at, operand + ": an aperture of no extent, which is taken as none");
+  if (least == 0 && most == 0) return report.warning(at, operand + ": an aperture of no extent, which is taken as none");
+  if (!(least >= 0 && most > least)) return report.broken(at, operand + ": its radii are not 0 <= least < largest");
   if (operand == "OBSC") {
     if (least > 0) return report.left_out(at, "OBSC: an obscuration that leaves its middle free is not one here");
     surface.inner_semi_diameter = static_cast<double>(most * unit);
