@@ -10,8 +10,8 @@
 // leaves directions along x as they are. Domain: Q <= 1, the ellipse of its equator, where c^2 (1+K) is positive.
 //
 // The hit is the one continuous with that of the quadric of the same vertex curvatures (quadric.h), not of a conic: no conic is near both sections of a
-// cylinder. The quadric reaches out as far as the biconic; a ray that meets it beyond the biconic's equator, which only a steep ray does beside the equator
-// of a biconic whose sections end at different heights, is not_converged.
+// cylinder. The quadric reaches out at least as far as the biconic; a ray that meets it beyond the biconic's equator is followed inward from there.
+// not_converged is such a ray only where Q, of a section with K < -1 and another with K > -1, comes below 1 on both sides, and where the steps are too many.
 //
 // Bound of the second derivative along the line, with |x|, |y|, N, Q and their derivatives bounded on the way:
 //   N''/(1+s) + 2 N' s'/(1+s)^2 + N s''/(1+s)^2 + 2 N s'^2/(1+s)^3,   s' = Q'/(2 s),   s'' = Q''/(2 s) + Q'^2/(4 s^3)       (3)
@@ -67,6 +67,14 @@ struct Biconic : QuadricDeparture<Biconic> {
     const T s = sqrt(T(1) - (of_x.a * xx + of_y.a * yy)), h = T(1) / (T(1) + s), z = N * h, per_s = z / s;
     return {z, at_x * h * (T(2) * of_x.c + of_x.a * per_s), at_y * h * (T(2) * of_y.c + of_y.a * per_s),
             (abs(of_x.c) * xx + abs(of_y.c) * yy) * h};
+  }
+
+  // Where Q is least; where it is nowhere below 1, no number.
+  template <class T>
+  T deepest_on(const Vec3<T>& at, const Vec3<T>& d) const {
+    const Section<T> of_x(x), of_y(y);
+    const T bends = of_x.a * d.x * d.x + of_y.a * d.y * d.y, t = -(of_x.a * at.x * d.x + of_y.a * at.y * d.y) / bends, at_x = at.x + t * d.x, at_y = at.y + t * d.y;
+    return bends > T(0) && of_x.a * at_x * at_x + of_y.a * at_y * at_y >= T(1) ? not_a_number<T>() : t;
   }
 
   // (3)

@@ -92,15 +92,16 @@ bool rises_between(const OnTheWay<T>& a, const OnTheWay<T>& b, const BoundedStep
   return (a.W < b.W ? a.W : b.W) > eighth * (step.g_3 * p + step.g_2 * p_t + g_t * step.p_2 + g * step.p_3);
 }
 
-// The surface has what bounded_step asks for.
+// The surface has what bounded_step asks for. The way begins at t = first, where the base's hit lies outside the surface's domain (quadric.h).
 template <class T, class Surface>
-Crossing<T> first_crossing(const Surface& surface, const Crossing<T>& start, const Vec3<T>& d) {
+Crossing<T> first_crossing(const Surface& surface, const Crossing<T>& start, const Vec3<T>& d, const T& first = T(0)) {
   using std::abs;
   const T eps = std::numeric_limits<T>::epsilon();
   const Vec3<T>& origin = start.point;
   T sense(0), sign(0);  // of the way, and of f on it
   BoundedStep<T> step{};
   OnTheWay<T> here{};
+  here.t = first;
   bool is_halved = false;  // the step: then the next one is at most twice as long
   for (int look = 0; look < most_first_crossing_looks; ++look) {
     const T t = here.t + sense * step.length;

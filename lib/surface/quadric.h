@@ -10,6 +10,10 @@
 // tells. It is the hit continuous with the quadric's if on the way, from 0 to t, no other crossing can be:
 //   |f'(t)| > B |t|,   B >= |f''| on the way,   and the quadric's d_z - L z_x - M z_y has one sign at both ends             (2)
 // (along a line its sag is convex or concave). Otherwise first_crossing.h goes the way in steps that pass no crossing.
+//
+// The quadric reaches out further than S. Where a line meets it beyond the equator of S, the hit comes over that equator while S grows out of the quadric:
+// the way begins where the line, going towards the middle of the domain of S, passes the equator (found by halving, so the last 1e-9 of the way beside it
+// are lost), and f must fall from there on; else the hit is still beyond, and the line misses S.                                                  (3)
 #pragma once
 
 #include "lib/surface/first_crossing.h"
@@ -25,7 +29,7 @@ struct Quadric {
   double curvature_x = 0, curvature_y = 0;
   double axial = 0;  // m
 
-  // m of the quadric with the sections' curvatures and (1+K) c: the smaller in size of the two m, so that it reaches out as far as both sections; 0, a
+  // m of the quadric with the sections' curvatures and (1+K) c: that of the two m with which it reaches out as far as both sections; 0, a
   // paraboloid, of a saddle. A section that is straight has no say.
   static Quadric of(const Conic& x, const Conic& y) {
     const double m_x = (1 + x.conic_constant) * x.curvature, m_y = (1 + y.conic_constant) * y.curvature;
@@ -76,10 +80,12 @@ struct Quadric {
   }
 };
 
-// The shape has height(x, y), NaN outside its domain, and T bend_on(at, d, h), infinite where there is no bound (first_crossing.h).
+// The shape has height(x, y), NaN outside its domain; T bend_on(at, d, h), infinite where there is no bound (first_crossing.h); and, for (3), T deepest_on(at, d), the
+// t of a place on the line that is within its domain: NaN if there is none, anything if the shape cannot tell (then a line of (3) is not_converged).
 template <class Shape>
 struct QuadricDeparture {
   static constexpr int most_looks = 8;
+  static constexpr int equator_halvings = 30;  // to 1e-9 of the way
   Quadric base;
 
   const Shape& self() const { return static_cast<const Shape&>(*this); }
@@ -106,6 +112,8 @@ struct QuadricDeparture {
       const Vec3<T> at = origin + t * d;
       const Height<T> h = self().height(at.x, at.y);
       const T f = at.z - h.z, slope = d.z - d.x * h.dz_dx - d.y * h.dz_dy, step = -f / slope;
+      if constexpr (requires { self().deepest_on(origin, d); })
+        if (look == 0 && !(f - f == T(0))) return meet_from_equator(start, d);
       if (!(step - step == T(0))) break;
       const T scale = abs(origin.x) + abs(origin.y) + abs(origin.z) + abs(t);
       const bool at_rounding = abs(f) <= eps * (abs(at.z) + h.magnitude);
@@ -120,6 +128,23 @@ struct QuadricDeparture {
       t += step;
     }
     return first_crossing(self(), start, d);
+  }
+
+  // (3)
+  template <class T>
+  Crossing<T> meet_from_equator(const Crossing<T>& start, const Vec3<T>& d) const {
+    const Vec3<T>& origin = start.point;
+    const auto height = [&](const T& t) { return self().height(T(origin.x + t * d.x), T(origin.y + t * d.y)); };
+    const auto is_defined = [](const Height<T>& h) { return h.z - h.z == T(0) && h.dz_dx - h.dz_dx == T(0) && h.dz_dy - h.dz_dy == T(0); };
+    T outside(0), inside = self().deepest_on(origin, d);
+    if (!is_defined(height(inside))) return no_crossing<T>(inside - inside == T(0) ? Status::not_converged : Status::missed);
+    for (int halving = 0; halving < equator_halvings; ++halving) {
+      const T middle = (outside + inside) / T(2);
+      (is_defined(height(middle)) ? inside : outside) = middle;
+    }
+    const T f = origin.z + inside * d.z - height(inside).z;
+    const bool leads_inward = ((f < T(0)) == (start.along > T(0))) == (inside > T(0));
+    return leads_inward ? first_crossing(self(), start, d, inside) : no_crossing<T>(Status::missed);
   }
 };
 

@@ -86,6 +86,14 @@ struct Toroid : QuadricDeparture<Toroid> {
     return {g + turned, rho * x / W, g_1 * V / W, abs(bare) + powers<true>(T(abs(y))).value + abs(turned)};
   }
 
+  // The middle of the line in an ellipse of about the domain: x to 1/rho, y to where the curve or V ends.
+  template <class T>
+  T deepest_on(const Vec3<T>& at, const Vec3<T>& d) const {
+    const T rho(rotation), c(section.curvature), curve = (T(1) + T(section.conic_constant)) * c * c, ring = rho * c;
+    const T a_x = rho * rho, a_y = curve > ring ? curve : ring;
+    return -(a_x * at.x * d.x + a_y * at.y * d.y) / (a_x * d.x * d.x + a_y * d.y * d.y);
+  }
+
   // (4)
   template <class T>
   T bend_on(const Vec3<T>& at, const Vec3<T>& d, const T& within) const {

@@ -156,6 +156,76 @@ TEST(Biconic, EndsAtTheEllipseOfItsEquator) {
   }
 }
 
+// A biconic of equal radii is in the x-z plane the conic of K_x. 2026-11-23: from 38 degrees on not_converged, for the quadric of the smaller K is met beyond
+// the equator (x 9.798, sag -8), though the hit is well before it (at 38 degrees x 9.19329, sag -5.233).
+TEST(Biconic, IsMetUpToItsEquatorByRaysThatMeetItsQuadricBeyond) {
+  const Biconic surface = Biconic::of({-1 / 12.0, .5}, {-1 / 12.0, -.5});
+  const Conic section{-1 / 12.0, .5};
+  int beyond = 0;
+  for (double degrees = 1; degrees < 89; degrees += 1) {
+    const double angle = degrees * M_PI / 180;
+    const V p{0, 0, -17}, d{std::sin(angle), 0, std::cos(angle)};
+    const auto expected = section.meet(p, d), hit = surface.meet(p, d);
+    ASSERT_EQ(hit.status, expected.status) << degrees;
+    if (expected.status != Status::ok) continue;
+    beyond += !std::isfinite(surface.height(surface.base.meet(p, d).point.x, 0.0).z);
+    // 16 roundings of 30 mm, which the oblique incidence magnifies
+    EXPECT_NEAR(hit.path, expected.path, 16 * eps * 30 * norm(expected.normal) / std::abs(expected.along)) << degrees;
+    EXPECT_GT(hit.along, 0);
+  }
+  EXPECT_EQ(beyond, 10);
+}
+
+// Where the sag is convex, a line crosses it once in its own sense, and that is the hit: of lines at all angles, those that samples along the line find, to
+// their distance. What is nearer to the equator than three samples, they may not find.
+TEST(Biconic, AndToroidAreMetWhereSamplesAlongTheLineFindThem) {
+  numerics::Arena arena;
+  const auto check = [](const char* name, const auto& shape, double radius, int least_from_beyond) {
+    SCOPED_TRACE(name);
+    std::mt19937_64 engine(3);
+    const auto u = [&](double low, double high) { return low + (high - low) * static_cast<double>(engine() >> 11) * 0x1p-53; };
+    int from_beyond = 0, hits = 0;
+    for (int i = 0; i < 2000; ++i) {
+      const double r = radius * std::sqrt(u(0, 1)), at = u(0, 2 * M_PI), tilt = u(0, 89) * M_PI / 180, azimuth = u(0, 2 * M_PI), sense = i % 3 == 0 ? -1 : 1;
+      const V d = sense * V{std::sin(tilt) * std::cos(azimuth), std::sin(tilt) * std::sin(azimuth), std::cos(tilt)};
+      const V p{r * std::cos(at), r * std::sin(at), u(-radius, radius)};
+      const auto hit = shape.meet(p, d);
+      const auto f_at = [&](double t) { return p.z + t * d.z - shape.height(p.x + t * d.x, p.y + t * d.y).z; };
+      constexpr double step = .02;
+      double found = infinity, before = f_at(-60);
+      bool is_at_edge = false;
+      for (double t = -60; t < 60; t += step) {
+        const double f = f_at(t + step);
+        if ((before < 0) != (f < 0) && (f > before) == (d.z > 0)) found = t, is_at_edge = std::isnan(f_at(t - 3 * step) + f_at(t + 3 * step));  // NaN is in no order
+        before = f;
+      }
+      if (found < infinity && !is_at_edge) {
+        ASSERT_EQ(hit.status, Status::ok) << i;
+        EXPECT_NEAR(hit.path, found + step / 2, step) << i;
+        ++hits;
+        const auto on_base = shape.base.meet(p, d);
+        from_beyond += std::isnan(shape.height(on_base.point.x, on_base.point.y).z);
+      } else if (hit.status == Status::ok && found == infinity && std::abs(hit.path) < 59) {
+        EXPECT_TRUE(std::isnan(f_at(hit.path - step) + f_at(hit.path + step))) << i;
+      }
+    }
+    EXPECT_GT(hits, 1000);
+    EXPECT_GE(from_beyond, least_from_beyond);
+  };
+  check("retina", Biconic::of({-1 / 12.91, .27}, {-1 / 12.72, .25}), 11, 0);
+  check("unlike retina", Biconic::of({-1 / 12.5, .2}, {-1 / 12.0, .1}), 11, 3);
+  check("sections of unlike K", Biconic::of({-1 / 12.0, .5}, {-1 / 12.0, -.5}), 11, 30);
+  check("ring within", toroid(-11, -13, 0, {}, arena), 11, 10);
+  check("ring without", toroid(-13, -11, 0, {}, arena), 11, 3);
+  check("ring of a prolate curve", toroid(-12, -12, -.8, {}, arena), 11, 30);
+}
+
+// 2026-11-23: not_converged, where there is no surface.
+TEST(Biconic, IsMissedByARayAlongItsAxisBeyondItsEquator) {
+  EXPECT_EQ(Biconic::of({1 / 5.0, 2}, {-1 / 6.0, 1.5}).meet(V{3, 0, -2}, V{0, 0, 1}).status, Status::missed);
+  EXPECT_EQ(Biconic::of({1 / 5.0, 2}, {1 / 6.0, 1.5}).meet(V{3, 0, -2}, V{0, 0, 1}).status, Status::missed);
+}
+
 TEST(Biconic, IsItsOwnMirrorImageInXAndInY) {
   const Biconic surface = Biconic::of({1 / 9.0, -2}, {-1 / 20.0, .5}), turned = Biconic::of({-1 / 20.0, .5}, {1 / 9.0, -2});
   const V p{1.5, -2, -4}, d = normalized(V{.2, .3, 1});
