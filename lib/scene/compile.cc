@@ -208,6 +208,10 @@ CompileResult compile_for(const Model& model, const Beam& beam) {
   std::vector<int> waiting;  // for the beam
   const auto is_stop = [](const prescription::Surface& one) { return one.stop; };
   const int stop = 1 + static_cast<int>(std::find_if(model.surfaces.begin(), model.surfaces.end(), is_stop) - model.surfaces.begin());
+  if (stop > static_cast<int>(model.surfaces.size())) {  // of a reader's model, one is
+    findings.error({}, "no surface is the stop");
+    return result;
+  }
   scene.stop = stop;
   for (std::size_t i = 0; i < model.surfaces.size(); ++i) {
     const prescription::Surface& given = model.surfaces[i];

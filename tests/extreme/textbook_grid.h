@@ -47,7 +47,10 @@ class TextbookGrid {
   HeightAndSlopes<T> height(const T& x, const T& y) const {
     const T hx(given_.spacing_x), hy(given_.spacing_y), width_x = hx * T(given_.count_x - 1), width_y = hy * T(given_.count_y - 1);
     const Beyond of_x((x - T(given_.first_x)), width_x), of_y((y - T(given_.first_y)), width_y);
-    const auto cell = [](const T& s, int count) { return std::clamp(static_cast<int>(static_cast<double>(s)), 0, count - 2); };
+    const auto cell = [](const T& s, int count) {
+      const double at = static_cast<double>(s);
+      return at > 0 ? static_cast<int>(std::min(at, count - 2.0)) : 0;  // NaN too
+    };
     const int i = cell(of_x.nearest / hx, given_.count_x), j = cell(of_y.nearest / hy, given_.count_y);
     const T s = of_x.nearest / hx - T(i), t = of_y.nearest / hy - T(j);
     T F[4][4];  // rows: at s = 0, 1, then the slopes there; columns likewise along t

@@ -157,6 +157,17 @@ TEST(Compile, says_what_cannot_be_launched) {
   expect_error(prescription_of("  - {thickness_mm: 5}\n  - {stop: true, thickness_mm: 5}\n  - {}\n", "entrance_pupil_diameter_mm: 4", "object: {distance_mm: -5}\n"), "lies in the entrance pupil", 4);
 }
 
+// Of a caller of the library: a reader's model has a stop. 2026-11-23: memory before the surfaces was read (AddressSanitizer).
+TEST(Compile, says_that_no_surface_is_the_stop) {
+  prescription::Model model;
+  model.wavelengths_nm = {550};
+  model.surfaces.resize(2);
+  const scene::CompileResult result = scene::compile(model);
+  EXPECT_FALSE(result.scene);
+  ASSERT_EQ(result.findings.error_count(), 1);
+  EXPECT_EQ(result.findings.all()[0].what, "no surface is the stop");
+}
+
 // The same focal plane with a focal length that is no binary fraction: what rounding leaves is no pupil.
 TEST(Compile, a_telecentric_stop_is_found_although_rounding_moves_the_pupil) {
   int count = 0;

@@ -350,6 +350,7 @@ TEST(Laws, conic_constant_zero_is_the_sphere) {
     prescription::Model model;
     model.wavelengths_nm = {550};
     model.surfaces = {surface_of(conic_shape(radius, 0), 0, index), surface_of({}, 0, 1)};
+    model.surfaces.front().stop = true;
     const CompiledScene compiled = checked(scene::compile(model));
     for (const GlobalRay& ray : random_rays(u, 5)) {
       const auto all = passages(compiled.scene, compiled.wavelength(), ray);
