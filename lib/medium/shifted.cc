@@ -26,7 +26,7 @@ class Shifted : public Dispersion {
 }  // namespace
 
 Medium shifted(const Medium& other, double index, double reference_um) {
-  return {fmt::format("index {}, dispersing as {},", index, other.name), std::make_shared<Shifted>(other, index, reference_um), other.shortest_um, other.longest_um};
+  return {fmt::format("index {} dispersing as {}", index, other.name), std::make_shared<Shifted>(other, index, reference_um), other.shortest_um, other.longest_um};
 }
 
 }  // namespace sagitta::medium

@@ -58,7 +58,7 @@ TEST(Medium, AShiftedOneRisesAndFallsAsTheOther) {
     return from_formula("lens", *find_formula("Navarro"), {1.4492 + more, 1.42625 + more, 1.4175 + more, 1.4097 + more}, 0.365, 1.014);
   };
   const Medium other = lens(0), medium = shifted(other, 1.43, 0.5893), by_nodes = lens(0.018);
-  EXPECT_EQ(medium.name, "index 1.43, dispersing as lens,");
+  EXPECT_EQ(medium.name, "index 1.43 dispersing as lens");
   EXPECT_EQ(medium.index(0.5893), 1.43);
   for (const double um : {0.365, 0.4861, 0.6563, 1.014}) {
     EXPECT_EQ(medium.index(um), 1.43 + (other.index(um) - other.index(0.5893)));
