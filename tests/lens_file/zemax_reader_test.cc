@@ -37,6 +37,36 @@ surfaces:
 )yaml");
 }
 
+// 2026-11-23: MEMA, OEMA, OMMA, DBDT, SSID, LUID, EERA, IWDP, AUTH and IGNR 0, which every file of later versions has, were refused as not known.
+TEST(ZemaxFile, may_be_of_any_version) {
+  const std::string text = zemax_with("TYPE STANDARD\nCURV 0.05\nDISZ 5\nGLAS N-BK7 0 0 1.5168 64.17 0 0 0 0 0 0", "TYPE STANDARD\nCURV 0\nDISZ 5");
+  std::string later = text;
+  later.replace(0, later.find("MODE"), "VERS 231205 2763 20120530 20120530\nDBDT 0 38398 1.000E+10 0.000E+00\nDBDT 1 0 1 0 0 0 0\n\nAUTH \n\nIWDP 0\n");
+  later.insert(later.find("ROPD"), "OMMA 1 1\n");
+  for (std::size_t at = 0; (at = later.find("  HIDE", at)) != std::string::npos; at = later.find("  SLAB", at))
+    later.insert(at, "  FIMP \n\n  SSID 1\n  LUID 1\n  EERA 0\n  IGNR 0\n  OEMA 0.5 0 0 0 0 \"\"\n  MEMA 6.25 0 0 0 1 \"\"\n");
+  later.replace(later.find("FTYP 0 0 1 1 0 0 0"), 18, "FTYP 0 0 1 1 0 0 0 1");
+  const Outcome run = import_text("lens.zmx", later);
+  EXPECT_EQ(run.messages, "");
+  EXPECT_EQ(run.prescription.substr(run.prescription.find("wavelengths_nm")), [&] { const std::string older = import_text("lens.zmx", text).prescription; return older.substr(older.find("wavelengths_nm")); }());
+}
+
+// 2026-11-23: all but IGNR were passed over in silence.
+TEST(ZemaxFile, tells_what_changes_rays_beyond_its_surfaces) {
+  struct Case {
+    const char *line, *by, *expected;
+  };
+  for (const auto& [line, by, expected] : {Case{"GFAC 0 0", "GFAC 1 1", "8:1: error: GFAC: an apodized pupil"}, Case{"FTYP 0 0 1 1 0 0 0", "FTYP 0 0 1 1 0 0 1 1", "16:18: error: FTYP: an image space that is afocal"},
+                                           Case{"SLAB", "IGNR 1", "33:3: error: IGNR: a surface that is ignored, and stands here"},
+                                           Case{"GLAS N-BK7 0 0 1.5", "GLAS N-BK7 4 0 0.01", "48:14: error: GLAS: an offset from the index of a glass"},
+                                           Case{"GLAS N-BK7 0 0 1.5", "GLAS N-BK7 5 0 1.5", "48:14: error: GLAS: what solve 5 is, is not known"},
+                                           Case{"GLAS N-BK7 0 0 1.5", "GLAS N-BK7 3 0 1.5", "48:14: warning: GLAS: a glass that optimisation may substitute is taken as the one that is named"}}) {
+    std::string text = zemax_with("TYPE STANDARD\nCURV 0.05\nDISZ 5\nGLAS N-BK7 0 0 1.5 40", "TYPE STANDARD\nCURV 0\nDISZ 5");
+    EXPECT_EQ(import_text("lens.zmx", text).messages, "");
+    EXPECT_THAT(import_text("lens.zmx", text.replace(text.find(line), std::string(line).size(), by)).messages, HasSubstr(std::string("lens.zmx:") + expected)) << by;
+  }
+}
+
 TEST(ZemaxFile, may_be_in_any_encoding) {
   const std::string text = zemax_with("TYPE STANDARD\nCURV 0.1\nDISZ 5");
   const std::string expected = import_text("lens.zmx", text).prescription;
