@@ -179,6 +179,7 @@ class CodeVReader {
     target().radius.reset();
     if (is_radius && given != 0) target().radius = given;
     target().curvature = is_radius ? (given == 0 ? 0 : 1 / given) : given;
+    target().curvature_rounding = half_a_digit(word.text);
     if (given != 0 && !(std::abs(target().curvature) >= 1e-25L && std::abs(target().curvature) <= 1e25L))
       report_.broken(numbers_.place(word), fmt::format("'{}' is no {}", prescription::excerpt(word.text), is_radius ? "radius" : "curvature"));
   }

@@ -23,6 +23,7 @@ struct CodeVSurface {
   bool stop = false;
   std::optional<Real> radius;  // where it was given so
   Real curvature = 0, conic = 0, thickness = 0;
+  Real curvature_rounding = 0;  // half a unit of its last digit, where it was given
   Place conic_place, thickness_place;
   std::map<int, Real> powers;  // coefficients of powers of r
   Medium medium;                      // what follows, where no mirror stands

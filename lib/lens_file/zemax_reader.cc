@@ -117,7 +117,8 @@ class ZemaxReader {
   ZemaxSurface& surface() { return surfaces_.back(); }
   PlacedNumber placed(const Statement& statement, std::size_t i) const {
     const std::optional<Real> value = numbers_.number(statement, i);
-    return {value.value_or(0), i < statement.words.size() ? numbers_.place(statement.words[i]) : numbers_.place(statement)};
+    if (!value) return {0, i < statement.words.size() ? numbers_.place(statement.words[i]) : numbers_.place(statement)};
+    return {*value, numbers_.place(statement.words[i]), half_a_digit(statement.words[i].text)};
   }
 
   void take_version(const Statement& statement) { lens_.program = fmt::format("a Zemax lens file (VERS {})", prescription::excerpt(statement.rest)); }

@@ -24,7 +24,7 @@ class Reader {
 
   Real unit() const { return unit_; }
   std::string grid_file() const { return grid_file_of(given_, unit_, report_); }
-  double radius() const { return radius_of(given_.curvature.value / unit_); }
+  double radius() const { return radius_of(given_.curvature.value / unit_, given_.curvature.rounding / unit_); }
   double conic() const { return static_cast<double>(given_.conic.value); }
   // A length in mm.
   double length(Real value) const { return static_cast<double>(value * unit_); }
