@@ -121,6 +121,11 @@ class ZemaxReader {
     return {*value, numbers_.place(statement.words[i]), half_a_digit(statement.words[i].text)};
   }
 
+  static Stated stated(const Word& word) {
+    const std::optional<Real> value = parse_real(word.text);
+    return value ? Stated{static_cast<double>(*value), static_cast<double>(half_a_digit(word.text))} : Stated{};
+  }
+
   void take_version(const Statement& statement) { lens_.program = fmt::format("a Zemax lens file (VERS {})", prescription::excerpt(statement.rest)); }
   void take_mode(const Statement& statement) {
     is_sequential_ = statement.rest.starts_with("SEQ");
@@ -180,7 +185,10 @@ class ZemaxReader {
     if (celsius && atmospheres && (*celsius != 20 || *atmospheres != 1))
       report_.left_out(numbers_.place(statement), "ENVD: a temperature other than 20 C or a pressure other than 1 atm", "indices are those of the catalogues");
   }
-  void take_catalogs(const Statement& statement) { lens_.remarks.push_back(fmt::format("Its glasses are of {}.", prescription::excerpt(statement.rest))); }
+  void take_catalogs(const Statement& statement) {
+    for (std::size_t i = 1; i < statement.words.size(); ++i) lens_.glass_catalogs.push_back(statement.words[i].text);
+    lens_.remarks.push_back(fmt::format("Its glasses are of {}.", prescription::excerpt(statement.rest)));
+  }
   void take_ray_aiming(const Statement& statement) {
     const int how = statement.words.size() > 2 ? numbers_.whole(statement, 2, 0, 2).value_or(0) : 0;
     lens_.aims = how == 2;
@@ -222,7 +230,14 @@ class ZemaxReader {
     const int code = statement.words.size() > 2 ? numbers_.whole(statement, 2, 0, 99).value_or(0) : 0;
     if (code == 3) report_.warning(numbers_.place(statement.words[2]), "GLAS: a glass that optimisation may substitute is taken as the one that is named");
     if (code > 3) report_.left_out(numbers_.place(statement.words[2]), (code == 4 ? "GLAS: an offset from the index of a glass" : fmt::format("GLAS: what solve {} is, is not known", code)) + "; the glass that is named stands for it");
-    if (!is_model) return void(surface().medium = {Medium::Kind::glass, name, 1, 0, {}, at});
+    if (!is_model) {
+      surface().medium = {Medium::Kind::glass, name, 1, 0, {}, at};
+      if (code == 4 || statement.words.size() < 6) return;
+      const Stated nd = stated(statement.words[4]), vd = stated(statement.words[5]);
+      const bool is_placeholder = nd.value <= 1 || (nd.value == 1.5 && vd.value == 40);
+      if (!is_placeholder) surface().medium.stated_nd = nd, surface().medium.stated_vd = vd;
+      return;
+    }
     const std::optional<Real> nd = numbers_.number(statement, 4), vd = statement.words.size() > 5 ? numbers_.number(statement, 5) : Real(0);
     if (!nd || !vd) return;
     const double index = static_cast<double>(*nd), abbe = static_cast<double>(*vd);

@@ -88,6 +88,24 @@ TEST(CodeVGlass, is_a_name_with_its_maker_or_a_code) {
   EXPECT_THAT(with("1.517").messages, HasSubstr("lens.seq:15:8: error: '1.517' is neither a glass nor a glass code"));
 }
 
+// 2026-11-23: F5_CDGM, whose nd is 1.624353, was taken as Schott's F5, of 1.60342, without a word.
+TEST(CodeVGlass, is_not_another_maker_s_of_the_same_name) {
+  const prescription::test::TemporaryFolder folder;
+  const auto with = [&](const std::string& glass, const std::vector<std::string>& catalogs) {
+    const Imported run = import({folder.write("lens.seq", sequence("S 50 4 " + glass + "\nSTO\nS 0 3\nSI 0 0\n")), folder.path() + "/out.yaml", catalogs, false});
+    return prescription::test::text_of(run.findings) + run.prescription.value_or("");
+  };
+  for (const char* glass : {"F5_CDGM", "F2_CDGM", "N-BK7_OHARA", "NBK7_S"})
+    EXPECT_THAT(with(glass, {}), HasSubstr("lens.seq:15:8: error: unknown glass '" + std::string(glass) + "'\n  hint: '" + (glass[0] == 'F' ? std::string(glass, 2) : "N-BK7") +
+                                           "' is another maker's here; --catalog FILE.agf looks in a maker's catalogue")) << glass;
+  for (const char* glass : {"F5_SCHOTT", "F5_Schott", "F5_schott"}) EXPECT_THAT(with(glass, {}), AllOf(HasSubstr("medium: F5}"), Not(HasSubstr("warning")))) << glass;
+  const std::string lines = "NM F5 2 624359 1.624353 35.938 0 1\nCD 1.3 0.009 0.2 0.045 0.9 110 0 0 0 0\nLD 0.35 2.3\n";
+  const std::string of_the_maker = folder.write("cdgm.agf", lines), of_another = folder.write("one.agf", "CC Schott, 2020\n" + lines), unnamed = folder.write("mine.agf", lines);
+  EXPECT_THAT(with("F5_CDGM", {of_the_maker}), AllOf(HasSubstr("medium: F5}"), Not(HasSubstr("warning"))));
+  EXPECT_THAT(with("F5_CDGM", {of_another}), HasSubstr("error: unknown glass 'F5_CDGM'"));
+  EXPECT_THAT(with("F5_CDGM", {unnamed}), AllOf(HasSubstr("medium: F5}"), HasSubstr("warning: 'F5_CDGM' is taken as F5, whose source names no maker")));
+}
+
 // ADE and BDE turn left-handed, CDE right-handed.
 TEST(CodeVDecenter, with_return_is_the_surface_s_own) {
   const auto model = model_of("lens.seq", sequence("S 0 10\nSTO\nS 50 4\n DAR; XDE 1; YDE 2; ZDE 3; ADE 10; BDE 20; CDE 30\nS 0 3\nSI 0 0\n"));
