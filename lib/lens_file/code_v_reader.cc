@@ -20,13 +20,16 @@ namespace {
 using prescription::ApertureKind;
 using prescription::FieldKind;
 
-// Commands that say nothing about where rays go: weights, initials, updates, drawing; variables, couplings, derivatives and pickups, whose values stand in
+// Commands that say nothing about where rays go: weights, initials, updates, drawing; variables, couplings and derivatives, whose values stand in
 // their own commands; mirror substrates; checks of apertures and polarisation.
 constexpr std::array without_optics{"LEN", "GO",  "INI", "WTW", "WTF", "CLS", "CCY", "CCX", "THC", "GLC", "XDC", "YDC", "ZDC", "ADC", "BDC", "CDC", "KC",  "AC",  "BC", "CC",
-                                    "DC",  "EC",  "FC",  "GC",  "HC",  "JC",  "DER", "PIK", "CUM", "THM", "CWL", "CA",  "POL", "DDM", "MFL", "LAB"};
+                                    "DC",  "EC",  "FC",  "GC",  "HC",  "JC",  "DER", "CUM", "THM", "CWL", "CA",  "POL", "DDM", "MFL", "LAB"};
 
 constexpr std::array other_apertures{OtherAperture{"REX", "a rectangular aperture"}, OtherAperture{"REY", "a rectangular aperture"}, OtherAperture{"ELX", "an elliptical aperture"},
                                      OtherAperture{"ELY", "an elliptical aperture"}, OtherAperture{"ADX", "an aperture that is decentered"}, OtherAperture{"ADY", "an aperture that is decentered"}};
+
+// Heights, angles and angles of incidence (H, U, I) of the marginal and the chief ray (M, C).
+constexpr std::array<std::string_view, 12> solves{"HMY", "HMX", "HCY", "HCX", "UMY", "UMX", "UCY", "UCX", "IMY", "IMX", "ICY", "ICX"};
 
 constexpr Real infinite_object = 1e10L;  // in the units of the file
 
@@ -69,7 +72,8 @@ class CodeVReader {
         Command{"REF", &C::take_reference, 1}, Command{"XAN", &C::take_fields, any}, Command{"YAN", &C::take_fields, any}, Command{"XOB", &C::take_fields, any},
         Command{"YOB", &C::take_fields, any}, Command{"XIM", &C::take_fields, any}, Command{"YIM", &C::take_fields, any}, Command{"XRI", &C::take_fields, any},
         Command{"YRI", &C::take_fields, any}, Command{"VUX", &C::take_vignetting, any}, Command{"VLX", &C::take_vignetting, any}, Command{"VUY", &C::take_vignetting, any},
-        Command{"VLY", &C::take_vignetting, any}, Command{"TEM", &C::take_environment, 1}, Command{"PRE", &C::take_environment, 1}, Command{"PIM", &C::take_image_solve, 1}};
+        Command{"VLY", &C::take_vignetting, any}, Command{"TEM", &C::take_environment, 1}, Command{"PRE", &C::take_environment, 1}, Command{"PIM", &C::take_image_solve, 1},
+        Command{"PIK", &C::take_pickup, any}};
     static constexpr std::array of_surface{
         Command{"RDY", &C::take_radius, 1}, Command{"CUY", &C::take_curvature, 1}, Command{"THI", &C::take_thickness, 1}, Command{"GLA", &C::take_glass, 1},
         Command{"RMD", &C::take_mode, 1}, Command{"SLB", &C::take_name, 1}, Command{"STO", &C::take_stop, 0}, Command{"SPH", &C::take_sphere, 0}, Command{"CON", &C::take_nothing, 0},
@@ -93,6 +97,7 @@ class CodeVReader {
     target_ = surfaces_.size() - 1;
     if (const auto found = std::find_if(of_surface.begin(), of_surface.end(), is_it); found != of_surface.end()) {
       if (!take_qualifier(statement)) return;
+      if (is_solve(statement)) return take_solve(statement);
       (this->*found->take)(statement);
       return leave_out_more(statement, found->most_words);
     }
@@ -180,6 +185,7 @@ class CodeVReader {
     if (is_radius && given != 0) target().radius = given;
     target().curvature = is_radius ? (given == 0 ? 0 : 1 / given) : given;
     target().curvature_rounding = half_a_digit(word.text);
+    target().curvature_place = numbers_.place(word);
     if (given != 0 && !(std::abs(target().curvature) >= 1e-25L && std::abs(target().curvature) <= 1e25L))
       report_.broken(numbers_.place(word), fmt::format("'{}' is no {}", prescription::excerpt(word.text), is_radius ? "radius" : "curvature"));
   }
@@ -259,6 +265,70 @@ class CodeVReader {
     if (statement.words.size() < 2 || !upper(statement.words[1].text).starts_with("N")) lens_.solves_image = numbers_.place(statement);
   }
 
+  // THI HMY 0.0, CUY UMY -0.1: a condition in place of a number. A saved lens has the solved number in the S of its surface.
+  static bool is_solve(const Statement& statement) {
+    const std::string& name = statement.name();
+    if ((name != "THI" && name != "CUY" && name != "RDY") || statement.words.size() < 2 || statement.words[1].quoted) return false;
+    const std::string& word = statement.words[1].text;
+    return word.size() == 3 && std::all_of(word.begin(), word.end(), [](char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); });
+  }
+  void take_solve(const Statement& statement) {
+    const bool is_thickness = statement.name() == "THI";
+    const Real given = is_thickness ? target().thickness : target().curvature;
+    const Place at = numbers_.place(statement);
+    const std::string word = upper(statement.words[1].text), what = fmt::format("{} {}", statement.name(), word);
+    if (given == 0) return report_.left_out(at, what + ": a solve, and the surface has no number that it was solved to", "a lens that CODE V saves has it behind S");
+    const int line = (is_thickness ? target().thickness_place : target().curvature_place).line;
+    if (std::find(solves.begin(), solves.end(), word) == solves.end()) return report_.left_out(at, fmt::format("{} is not known; the number in line {} stands for it", what, line));
+    report_.note(at, fmt::format("{}: the solve is not kept; the number in line {} is", what, line));
+  }
+
+  // PIK THI S3 Z1 THI S2 Z1 -1.0 0.5: the first is -1.0 times the second, plus 0.5; the second item where it is another, Z1, scale and offset may be missing.
+  void take_pickup(const Statement& statement) { pickups_.push_back(statement); }
+
+  struct Quantity {
+    std::string name;
+    std::optional<Real> value;  // none: it is not known
+  };
+  // The item at words[i], or `item`, of the surface behind it; `i` is moved on.
+  std::optional<Quantity> quantity(const Statement& statement, std::size_t& i, std::string& item) {
+    const auto word = [&](std::size_t k) { return k < statement.words.size() ? upper(statement.words[k].text) : std::string(); };
+    if (!is_surface_name(word(i))) item = command_name(word(i++));
+    if (!is_surface_name(word(i))) return std::nullopt;
+    const std::optional<std::size_t> number = surface_number(word(i));
+    if (!number || *number >= surfaces_.size()) return std::nullopt;
+    Quantity found{fmt::format("{} {}", prescription::excerpt(item), word(i++)), value_of(surfaces_[*number], item)};
+    if (word(i).starts_with("Z")) ++i;
+    return found;
+  }
+  static std::optional<Real> value_of(const CodeVSurface& surface, const std::string& item) {
+    using S = CodeVSurface;
+    struct Item {
+      std::string_view name;
+      Real (*value)(const S&);
+    };
+    static constexpr std::array items{
+        Item{"THI", [](const S& s) { return s.thickness; }}, Item{"CUY", [](const S& s) { return s.curvature; }}, Item{"RDY", [](const S& s) { return s.curvature == 0 ? 0 : 1 / s.curvature; }},
+        Item{"K", [](const S& s) { return s.conic; }}, Item{"XDE", [](const S& s) { return s.shift.x; }}, Item{"YDE", [](const S& s) { return s.shift.y; }}, Item{"ZDE", [](const S& s) { return s.shift.z; }},
+        Item{"ADE", [](const S& s) { return s.tilt.x; }}, Item{"BDE", [](const S& s) { return s.tilt.y; }}, Item{"CDE", [](const S& s) { return s.tilt.z; }}};
+    const auto found = std::find_if(items.begin(), items.end(), [&](const Item& one) { return one.name == item; });
+    return found == items.end() ? std::nullopt : std::optional(found->value(surface));
+  }
+  void check_pickup(const Statement& statement) {
+    const Place at = numbers_.place(statement);
+    std::size_t i = 1;
+    std::string item;
+    const std::optional<Quantity> to = quantity(statement, i, item), from = to ? quantity(statement, i, item) : std::nullopt;
+    const auto number = [&](std::size_t k, Real missing) { return k < statement.words.size() ? parse_real(statement.words[k].text) : std::optional(missing); };
+    const std::optional<Real> scale = number(i, 1), offset = number(i + 1, 0);
+    if (!from || !to->value || !from->value || !scale || !offset || i + 2 < statement.words.size())
+      return report_.note(at, fmt::format("PIK {}: the pickup is neither kept nor checked; the number in the file is kept", prescription::excerpt(statement.rest)));
+    const Real picked_up = *scale * *from->value + *offset;
+    if (std::abs(picked_up - *to->value) <= 1e-6L * std::max(std::abs(picked_up), std::abs(*to->value))) return;
+    const auto text = [](Real value) { return fmt::format("{:.9g}", static_cast<double>(value)); };
+    report_.left_out(at, fmt::format("PIK: {} is {} in the file, where the pickup from {} makes it {}", to->name, text(*to->value), from->name, text(picked_up)), "a lens that CODE V saves has the number that was picked up");
+  }
+
   void take_radius(const Statement& statement) {
     if (numbers_.number(statement, 1)) set_radius(statement, statement.words[1], true);
   }
@@ -280,14 +350,16 @@ class CodeVReader {
   void take_name(const Statement& statement) {
     if (statement.words.size() > 1) target().name = statement.words[1].text;
   }
-  void take_stop(const Statement&) {
+  void take_stop(const Statement& statement) {
     for (CodeVSurface& one : surfaces_) one.stop = false;
     target().stop = true;
+    stop_place_ = numbers_.place(statement);
   }
   void take_sphere(const Statement&) { target().conic = 0, target().powers.clear(); }
   void take_nothing(const Statement&) {}
   void take_conic(const Statement& statement) {
     target().conic = value(statement);
+    target().shape_place = numbers_.place(statement);
     if (!surface::conic_constants.contains(static_cast<double>(target().conic)))
       report_.broken(numbers_.place(statement), fmt::format("a conic constant lies from {:g} to {:g}", surface::conic_constants.low, surface::conic_constants.high));
   }
@@ -296,6 +368,7 @@ class CodeVReader {
     const char letter = statement.name()[0];
     const int power_of_r = letter == 'J' ? 20 : 4 + 2 * (letter - 'A');
     target().powers[power_of_r] = value(statement);
+    target().shape_place = numbers_.place(statement);
   }
   void take_fresnel(const Statement& statement) {
     if (value(statement) != 0) report_.left_out(numbers_.place(statement), "CUF: a Fresnel surface");
@@ -324,8 +397,11 @@ class CodeVReader {
   }
   void take_decenter_kind(const Statement& statement) {
     using Decenter = CodeVSurface::Decenter;
-    target().decenter = statement.name() == "DAR" ? Decenter::and_return : statement.name() == "REV" ? Decenter::reverse : Decenter::bend;
-    target().decenter_place = numbers_.place(statement);
+    const Decenter kind = statement.name() == "DAR" ? Decenter::and_return : statement.name() == "REV" ? Decenter::reverse : Decenter::bend;
+    if (target().decenter != Decenter::basic && target().decenter != kind)
+      return report_.broken(numbers_.place(statement), fmt::format("{}: the surface is decentered in another way in line {}", statement.name(), target().decenter_kind_place.line), "it is one of DAR, REV and BEN");
+    target().decenter = kind;
+    target().decenter_place = target().decenter_kind_place = numbers_.place(statement);
   }
 
   void finish();
@@ -339,8 +415,9 @@ class CodeVReader {
   bool is_radius_mode_ = true, has_radius_mode_ = false, has_unit_ = false, has_image_ = false, has_fields_ = false, has_glass_code_ = false, is_in_private_catalog_ = false;
   Statement aperture_;
   std::optional<int> reference_;
-  Place reference_place_;
+  Place reference_place_, stop_place_;
   std::vector<Real> x_fields_, y_fields_;
+  std::vector<Statement> pickups_;
   std::vector<CodeVSurface> surfaces_{1};  // the object first
   std::size_t target_ = 0;
 };
@@ -363,8 +440,12 @@ void CodeVReader::finish() {
     if (lens_.object_distance == 0) report_.broken(object.thickness_place, "the object stands at the first surface");
     if (object.curvature != 0) report_.left_out(object.place.line > 0 ? object.place : object.thickness_place, "SO: a curved object");
   }
+  for (const Statement& pickup : pickups_) check_pickup(pickup);
   lens_.object_medium = object.medium;
   if (object.mirror_place) report_.broken(*object.mirror_place, "the object is a mirror");
+  const bool is_aspheric = (object.conic != 0 && object.curvature != 0) || std::any_of(object.powers.begin(), object.powers.end(), [](const auto& one) { return one.second != 0; });
+  if (is_aspheric) report_.left_out(object.shape_place, "SO: an aspheric object");
+  if (object.circle_place.line > 0) report_.left_out(object.circle_place, "CIR: an aperture of the object");
   if (object.decenter_place.line > 0) report_.left_out(object.decenter_place, "SO: a decentered object");
   for (std::size_t i = 1; i < surfaces_.size(); ++i) lens_.surfaces.push_back(surface_of(surfaces_[i], unit_, report_));
   Surface& image = lens_.surfaces.back();
@@ -372,8 +453,8 @@ void CodeVReader::finish() {
   lens_.surfaces[lens_.surfaces.size() - 2].thickness += lens_.image_shift;
   if (image.medium.kind != Medium::Kind::air) report_.warning(image.medium.place, "SI: what is behind the image surface is left out: no ray gets there");
   image.medium = {};
-  if (object.stop) report_.broken({file_}, "the object is the stop");
-  const bool has_stop = std::any_of(lens_.surfaces.begin(), lens_.surfaces.end(), [](const Surface& one) { return one.stop; });
+  if (object.stop) report_.broken(stop_place_, "the object is the stop", "STO stands behind the S of its surface, or names it: STO S3");
+  const bool has_stop = object.stop || std::any_of(lens_.surfaces.begin(), lens_.surfaces.end(), [](const Surface& one) { return one.stop; });
   if (!has_stop) report_.warning({file_}, "no STO: surface 1 is taken as the stop");
   if (!has_stop) lens_.surfaces.front().stop = true;
   lens_.aims = !lens_.surfaces.front().stop;  // that program aims every ray; a stop that stands first is its own pupil
