@@ -153,7 +153,8 @@ class ZemaxReader {
       report_.left_out(numbers_.place(statement.words[2]), "FTYP: an object space that is telecentric", "its pupil is computed from the stop instead");
     if (statement.words.size() > 3) field_count_ = static_cast<std::size_t>(numbers_.whole(statement, 3, 0, most_fields).value_or(0));
     if (statement.words.size() > 4) wavelength_count_ = static_cast<std::size_t>(numbers_.whole(statement, 4, 0, most_wavelengths).value_or(0));
-    // The fifth and sixth say how fields are normalised and when solves are iterated; the eighth is the number of fields again.
+    // The fifth and sixth say how fields are normalised and when solves are iterated; the seventh is what optiland's reader takes it for; the eighth is the number of
+    // fields again.
     if (statement.words.size() > 7 && numbers_.number(statement, 7).value_or(0) != 0)
       report_.left_out(numbers_.place(statement.words[7]), "FTYP: an image space that is afocal", "rays are traced to the image surface, and not made parallel");
   }
