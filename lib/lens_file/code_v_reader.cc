@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "lib/lens_file/code_v_solve_internal.h"
 #include "lib/lens_file/code_v_surface_internal.h"
 #include "lib/lens_file/code_v_text_internal.h"
 #include "lib/lens_file/lens_reader.h"
@@ -27,9 +28,6 @@ constexpr std::array without_optics{"LEN", "GO",  "INI", "WTW", "WTF", "CLS", "C
 
 constexpr std::array other_apertures{OtherAperture{"REX", "a rectangular aperture"}, OtherAperture{"REY", "a rectangular aperture"}, OtherAperture{"ELX", "an elliptical aperture"},
                                      OtherAperture{"ELY", "an elliptical aperture"}, OtherAperture{"ADX", "an aperture that is decentered"}, OtherAperture{"ADY", "an aperture that is decentered"}};
-
-// Heights, angles and angles of incidence (H, U, I) of the marginal and the chief ray (M, C).
-constexpr std::array<std::string_view, 12> solves{"HMY", "HMX", "HCY", "HCX", "UMY", "UMX", "UCY", "UCX", "IMY", "IMX", "ICY", "ICX"};
 
 constexpr Real infinite_object = 1e10L;  // in the units of the file
 
@@ -97,7 +95,7 @@ class CodeVReader {
     target_ = surfaces_.size() - 1;
     if (const auto found = std::find_if(of_surface.begin(), of_surface.end(), is_it); found != of_surface.end()) {
       if (!take_qualifier(statement)) return;
-      if (is_solve(statement)) return take_solve(statement);
+      if (is_solve(statement)) return take_solve(statement, target(), numbers_, report_);
       (this->*found->take)(statement);
       return leave_out_more(statement, found->most_words);
     }
@@ -127,9 +125,8 @@ class CodeVReader {
       report_.left_out(numbers_.place(statement.words[1]), fmt::format("{}: zoom positions", statement.name()));
       return false;
     }
-    const bool is_label = word.starts_with("S'") || word.starts_with("S\"");
-    if (!is_label && !is_surface_name(word)) return true;
-    const std::optional<std::size_t> number = is_label ? labelled(word) : surface_number(word);
+    if (!names_surface(word)) return true;
+    const std::optional<std::size_t> number = surface_named(word, surfaces_, has_image_);
     if (!number || *number >= surfaces_.size()) {
       report_.broken(numbers_.place(statement.words[1]), fmt::format("{}: there is no surface {} here", statement.name(), prescription::excerpt(statement.words[1].text)));
       return false;
@@ -138,21 +135,6 @@ class CodeVReader {
     statement.words.erase(statement.words.begin() + 1);
     return true;
   }
-  // Of S'IRIS' the surface whose label (SLB) is that, in whatever letters.
-  std::optional<std::size_t> labelled(const std::string& word) const {
-    const std::string label = word.substr(2, word.find(word[1], 2) - 2);
-    const auto found = std::find_if(surfaces_.begin(), surfaces_.end(), [&](const CodeVSurface& one) { return !label.empty() && upper(one.name) == label; });
-    return found == surfaces_.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - surfaces_.begin()));
-  }
-  // "S" and what is not a number: none.
-  std::optional<std::size_t> surface_number(const std::string& name) const {
-    if (name == "SO" || name == "S0") return 0;
-    if (name == "SI") return has_image_ ? std::optional(surfaces_.size() - 1) : std::nullopt;
-    const std::optional<Real> number = parse_real(std::string_view(name).substr(1));
-    if (!number || !(*number >= 1 && *number <= most_surfaces) || *number != std::trunc(*number)) return std::nullopt;
-    return static_cast<std::size_t>(*number);
-  }
-
   CodeVSurface& target() { return surfaces_[target_]; }
   Real value(const Statement& statement) const { return numbers_.number(statement, 1).value_or(0); }
 
@@ -165,7 +147,7 @@ class CodeVReader {
     } else if (name == "SI" && has_image_) {
       target_ = surfaces_.size() - 1;
     } else {
-      const std::optional<std::size_t> number = name == "S" || name == "SI" ? surfaces_.size() : surface_number(name).value_or(0);
+      const std::optional<std::size_t> number = name == "S" || name == "SI" ? surfaces_.size() : surface_named(name, surfaces_, has_image_).value_or(0);
       if (*number == 0 || *number > surfaces_.size()) return report_.broken(at, fmt::format("{} where S{} comes next", prescription::excerpt(name), surfaces_.size()));
       if (*number == surfaces_.size()) {
         if (has_image_) return report_.broken(at, "a surface behind the image surface (SI)");
@@ -265,70 +247,7 @@ class CodeVReader {
     if (statement.words.size() < 2 || !upper(statement.words[1].text).starts_with("N")) lens_.solves_image = numbers_.place(statement);
   }
 
-  // THI HMY 0.0, CUY UMY -0.1: a condition in place of a number. A saved lens has the solved number in the S of its surface.
-  static bool is_solve(const Statement& statement) {
-    const std::string& name = statement.name();
-    if ((name != "THI" && name != "CUY" && name != "RDY") || statement.words.size() < 2 || statement.words[1].quoted) return false;
-    const std::string& word = statement.words[1].text;
-    return word.size() == 3 && std::all_of(word.begin(), word.end(), [](char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); });
-  }
-  void take_solve(const Statement& statement) {
-    const bool is_thickness = statement.name() == "THI";
-    const Real given = is_thickness ? target().thickness : target().curvature;
-    const Place at = numbers_.place(statement);
-    const std::string word = upper(statement.words[1].text), what = fmt::format("{} {}", statement.name(), word);
-    if (given == 0) return report_.left_out(at, what + ": a solve, and the surface has no number that it was solved to", "a lens that CODE V saves has it behind S");
-    const int line = (is_thickness ? target().thickness_place : target().curvature_place).line;
-    if (std::find(solves.begin(), solves.end(), word) == solves.end()) return report_.left_out(at, fmt::format("{} is not known; the number in line {} stands for it", what, line));
-    report_.note(at, fmt::format("{}: the solve is not kept; the number in line {} is", what, line));
-  }
-
-  // PIK THI S3 Z1 THI S2 Z1 -1.0 0.5: the first is -1.0 times the second, plus 0.5; the second item where it is another, Z1, scale and offset may be missing.
   void take_pickup(const Statement& statement) { pickups_.push_back(statement); }
-
-  struct Quantity {
-    std::string name;
-    std::optional<Real> value;  // none: it is not known
-  };
-  // The item at words[i], or `item`, of the surface behind it; `i` is moved on.
-  std::optional<Quantity> quantity(const Statement& statement, std::size_t& i, std::string& item) {
-    const auto word = [&](std::size_t k) { return k < statement.words.size() ? upper(statement.words[k].text) : std::string(); };
-    if (!is_surface_name(word(i))) item = command_name(word(i++));
-    if (!is_surface_name(word(i))) return std::nullopt;
-    const std::optional<std::size_t> number = surface_number(word(i));
-    if (!number || *number >= surfaces_.size()) return std::nullopt;
-    Quantity found{fmt::format("{} {}", prescription::excerpt(item), word(i++)), value_of(surfaces_[*number], item)};
-    if (word(i).starts_with("Z")) ++i;
-    return found;
-  }
-  static std::optional<Real> value_of(const CodeVSurface& surface, const std::string& item) {
-    using S = CodeVSurface;
-    struct Item {
-      std::string_view name;
-      Real (*value)(const S&);
-    };
-    static constexpr std::array items{
-        Item{"THI", [](const S& s) { return s.thickness; }}, Item{"CUY", [](const S& s) { return s.curvature; }}, Item{"RDY", [](const S& s) { return s.curvature == 0 ? 0 : 1 / s.curvature; }},
-        Item{"K", [](const S& s) { return s.conic; }}, Item{"XDE", [](const S& s) { return s.shift.x; }}, Item{"YDE", [](const S& s) { return s.shift.y; }}, Item{"ZDE", [](const S& s) { return s.shift.z; }},
-        Item{"ADE", [](const S& s) { return s.tilt.x; }}, Item{"BDE", [](const S& s) { return s.tilt.y; }}, Item{"CDE", [](const S& s) { return s.tilt.z; }}};
-    const auto found = std::find_if(items.begin(), items.end(), [&](const Item& one) { return one.name == item; });
-    return found == items.end() ? std::nullopt : std::optional(found->value(surface));
-  }
-  void check_pickup(const Statement& statement) {
-    const Place at = numbers_.place(statement);
-    std::size_t i = 1;
-    std::string item;
-    const std::optional<Quantity> to = quantity(statement, i, item), from = to ? quantity(statement, i, item) : std::nullopt;
-    const auto number = [&](std::size_t k, Real missing) { return k < statement.words.size() ? parse_real(statement.words[k].text) : std::optional(missing); };
-    const std::optional<Real> scale = number(i, 1), offset = number(i + 1, 0);
-    if (!from || !to->value || !from->value || !scale || !offset || i + 2 < statement.words.size())
-      return report_.note(at, fmt::format("PIK {}: the pickup is neither kept nor checked; the number in the file is kept", prescription::excerpt(statement.rest)));
-    const Real picked_up = *scale * *from->value + *offset;
-    if (std::abs(picked_up - *to->value) <= 1e-6L * std::max(std::abs(picked_up), std::abs(*to->value))) return;
-    const auto text = [](Real value) { return fmt::format("{:.9g}", static_cast<double>(value)); };
-    report_.left_out(at, fmt::format("PIK: {} is {} in the file, where the pickup from {} makes it {}", to->name, text(*to->value), from->name, text(picked_up)), "a lens that CODE V saves has the number that was picked up");
-  }
-
   void take_radius(const Statement& statement) {
     if (numbers_.number(statement, 1)) set_radius(statement, statement.words[1], true);
   }
@@ -440,7 +359,7 @@ void CodeVReader::finish() {
     if (lens_.object_distance == 0) report_.broken(object.thickness_place, "the object stands at the first surface");
     if (object.curvature != 0) report_.left_out(object.place.line > 0 ? object.place : object.thickness_place, "SO: a curved object");
   }
-  for (const Statement& pickup : pickups_) check_pickup(pickup);
+  for (const Statement& pickup : pickups_) check_pickup(pickup, surfaces_, has_image_, numbers_, report_);
   lens_.object_medium = object.medium;
   if (object.mirror_place) report_.broken(*object.mirror_place, "the object is a mirror");
   const bool is_aspheric = (object.conic != 0 && object.curvature != 0) || std::any_of(object.powers.begin(), object.powers.end(), [](const auto& one) { return one.second != 0; });

@@ -10,6 +10,7 @@
 
 #include "lib/lens_file/lens_reader.h"
 #include "lib/lens_file/lens_text_internal.h"
+#include "lib/lens_file/zemax_glass_internal.h"
 #include "lib/lens_file/zemax_surface_internal.h"
 #include "lib/prescription/keys.h"
 
@@ -121,11 +122,6 @@ class ZemaxReader {
     return {*value, numbers_.place(statement.words[i]), half_a_digit(statement.words[i].text)};
   }
 
-  static Stated stated(const Word& word) {
-    const std::optional<Real> value = parse_real(word.text);
-    return value ? Stated{static_cast<double>(*value), static_cast<double>(half_a_digit(word.text))} : Stated{};
-  }
-
   void take_version(const Statement& statement) { lens_.program = fmt::format("a Zemax lens file (VERS {})", prescription::excerpt(statement.rest)); }
   void take_mode(const Statement& statement) {
     is_sequential_ = statement.rest.starts_with("SEQ");
@@ -153,8 +149,7 @@ class ZemaxReader {
       report_.left_out(numbers_.place(statement.words[2]), "FTYP: an object space that is telecentric", "its pupil is computed from the stop instead");
     if (statement.words.size() > 3) field_count_ = static_cast<std::size_t>(numbers_.whole(statement, 3, 0, most_fields).value_or(0));
     if (statement.words.size() > 4) wavelength_count_ = static_cast<std::size_t>(numbers_.whole(statement, 4, 0, most_wavelengths).value_or(0));
-    // The fifth and sixth say how fields are normalised and when solves are iterated; the seventh is what optiland's reader takes it for; the eighth is the number of
-    // fields again.
+    // The fifth and sixth are of normalised fields and of solves; the seventh is what optiland's reader takes it for; the eighth is the number of fields again.
     if (statement.words.size() > 7 && numbers_.number(statement, 7).value_or(0) != 0)
       report_.left_out(numbers_.place(statement.words[7]), "FTYP: an image space that is afocal", "rays are traced to the image surface, and not made parallel");
   }
@@ -221,33 +216,13 @@ class ZemaxReader {
     surface().infinite = statement.words.size() > 1 && statement.words[1].text == "INFINITY";
     surface().thickness = surface().infinite ? PlacedNumber{0, numbers_.place(statement)} : placed(statement, 1);
   }
-  // GLAS name, code (0: fixed, 1: a model, 2: picked up, 3: to be substituted, 4: offset), pickup, nd, Vd, dPgF, ...
   void take_glass(const Statement& statement) {
-    const Place at = numbers_.place(statement);
-    if (statement.words.size() < 2) return report_.broken(at, "GLAS: the name of the glass is missing");
-    const std::string& name = statement.words[1].text;
-    const bool is_model = name == "___BLANK" || (statement.words.size() > 2 && statement.words[2].text == "1");
-    if (name == "MIRROR") return void(surface().medium = {Medium::Kind::mirror, {}, 1, 0, {}, at});
-    const int code = statement.words.size() > 2 ? numbers_.whole(statement, 2, 0, 99).value_or(0) : 0;
-    if (code == 3) report_.warning(numbers_.place(statement.words[2]), "GLAS: a glass that optimisation may substitute is taken as the one that is named");
-    if (code > 3) report_.left_out(numbers_.place(statement.words[2]), (code == 4 ? "GLAS: an offset from the index of a glass" : fmt::format("GLAS: what solve {} is, is not known", code)) + "; the glass that is named stands for it");
-    if (!is_model) {
-      surface().medium = {Medium::Kind::glass, name, 1, 0, {}, at};
-      if (code == 4 || statement.words.size() < 6) return;
-      const Stated nd = stated(statement.words[4]), vd = stated(statement.words[5]);
-      const bool is_placeholder = nd.value <= 1 || (nd.value == 1.5 && vd.value == 40);
-      if (!is_placeholder) surface().medium.stated_nd = nd, surface().medium.stated_vd = vd;
-      return;
-    }
-    const std::optional<Real> nd = numbers_.number(statement, 4), vd = statement.words.size() > 5 ? numbers_.number(statement, 5) : Real(0);
-    if (!nd || !vd) return;
-    const double index = static_cast<double>(*nd), abbe = static_cast<double>(*vd);
-    if (!(prescription::index_range.contains(index) && abbe >= 0)) return report_.broken(at, fmt::format("GLAS: a model glass of nd {} and Vd {}", number_text(index), number_text(abbe)));
-    if (statement.words.size() > 6 && numbers_.number(statement, 6).value_or(0) != 0)
-      report_.left_out(numbers_.place(statement.words[6]), "GLAS: dPgF, the partial dispersion of a model glass", "give its index as a table or a formula in a file NAME.yml, and NAME here");
-    surface().medium = {abbe == 0 ? Medium::Kind::index : Medium::Kind::nd_vd, {}, index, abbe, {}, at};
-    if (abbe != 0 && !has_model_glass_) lens_.remarks.push_back("Its model glasses are two-term formulas through nd and Vd here, which differ between and beyond the F and C lines from OpticStudio's own.");
-    has_model_glass_ |= abbe != 0;
+    const std::optional<Medium> medium = zemax_glass(statement, numbers_, report_);
+    if (!medium) return;
+    surface().medium = *medium;
+    if (medium->kind != Medium::Kind::nd_vd || has_model_glass_) return;
+    lens_.remarks.push_back("Its model glasses are two-term formulas through nd and Vd here, which differ between and beyond the F and C lines from OpticStudio's own.");
+    has_model_glass_ = true;
   }
   void take_ignored(const Statement& statement) {
     if (numbers_.number(statement, 1).value_or(0) != 0) report_.left_out(numbers_.place(statement), "IGNR: a surface that is ignored, and stands here", "delete it in OpticStudio");
