@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "lib/lens_file/code_v_solve_internal.h"
 #include "lib/lens_file/code_v_surface_internal.h"
 #include "lib/lens_file/code_v_text_internal.h"
 #include "lib/lens_file/lens_reader.h"
@@ -20,10 +21,10 @@ namespace {
 using prescription::ApertureKind;
 using prescription::FieldKind;
 
-// Commands that say nothing about where rays go: weights, initials, updates, drawing; variables, couplings, derivatives and pickups, whose values stand in
+// Commands that say nothing about where rays go: weights, initials, updates, drawing; variables, couplings and derivatives, whose values stand in
 // their own commands; mirror substrates; checks of apertures and polarisation.
 constexpr std::array without_optics{"LEN", "GO",  "INI", "WTW", "WTF", "CLS", "CCY", "CCX", "THC", "GLC", "XDC", "YDC", "ZDC", "ADC", "BDC", "CDC", "KC",  "AC",  "BC", "CC",
-                                    "DC",  "EC",  "FC",  "GC",  "HC",  "JC",  "DER", "PIK", "CUM", "THM", "CWL", "CA",  "POL", "DDM", "MFL", "LAB"};
+                                    "DC",  "EC",  "FC",  "GC",  "HC",  "JC",  "DER", "CUM", "THM", "CWL", "CA",  "POL", "DDM", "MFL", "LAB"};
 
 constexpr std::array other_apertures{OtherAperture{"REX", "a rectangular aperture"}, OtherAperture{"REY", "a rectangular aperture"}, OtherAperture{"ELX", "an elliptical aperture"},
                                      OtherAperture{"ELY", "an elliptical aperture"}, OtherAperture{"ADX", "an aperture that is decentered"}, OtherAperture{"ADY", "an aperture that is decentered"}};
@@ -69,7 +70,8 @@ class CodeVReader {
         Command{"REF", &C::take_reference, 1}, Command{"XAN", &C::take_fields, any}, Command{"YAN", &C::take_fields, any}, Command{"XOB", &C::take_fields, any},
         Command{"YOB", &C::take_fields, any}, Command{"XIM", &C::take_fields, any}, Command{"YIM", &C::take_fields, any}, Command{"XRI", &C::take_fields, any},
         Command{"YRI", &C::take_fields, any}, Command{"VUX", &C::take_vignetting, any}, Command{"VLX", &C::take_vignetting, any}, Command{"VUY", &C::take_vignetting, any},
-        Command{"VLY", &C::take_vignetting, any}, Command{"TEM", &C::take_environment, 1}, Command{"PRE", &C::take_environment, 1}, Command{"PIM", &C::take_image_solve, 1}};
+        Command{"VLY", &C::take_vignetting, any}, Command{"TEM", &C::take_environment, 1}, Command{"PRE", &C::take_environment, 1}, Command{"PIM", &C::take_image_solve, 1},
+        Command{"PIK", &C::take_pickup, any}};
     static constexpr std::array of_surface{
         Command{"RDY", &C::take_radius, 1}, Command{"CUY", &C::take_curvature, 1}, Command{"THI", &C::take_thickness, 1}, Command{"GLA", &C::take_glass, 1},
         Command{"RMD", &C::take_mode, 1}, Command{"SLB", &C::take_name, 1}, Command{"STO", &C::take_stop, 0}, Command{"SPH", &C::take_sphere, 0}, Command{"CON", &C::take_nothing, 0},
@@ -93,6 +95,7 @@ class CodeVReader {
     target_ = surfaces_.size() - 1;
     if (const auto found = std::find_if(of_surface.begin(), of_surface.end(), is_it); found != of_surface.end()) {
       if (!take_qualifier(statement)) return;
+      if (is_solve(statement)) return take_solve(statement, target(), numbers_, report_);
       (this->*found->take)(statement);
       return leave_out_more(statement, found->most_words);
     }
@@ -122,9 +125,8 @@ class CodeVReader {
       report_.left_out(numbers_.place(statement.words[1]), fmt::format("{}: zoom positions", statement.name()));
       return false;
     }
-    const bool is_label = word.starts_with("S'") || word.starts_with("S\"");
-    if (!is_label && !is_surface_name(word)) return true;
-    const std::optional<std::size_t> number = is_label ? labelled(word) : surface_number(word);
+    if (!names_surface(word)) return true;
+    const std::optional<std::size_t> number = surface_named(word, surfaces_, has_image_);
     if (!number || *number >= surfaces_.size()) {
       report_.broken(numbers_.place(statement.words[1]), fmt::format("{}: there is no surface {} here", statement.name(), prescription::excerpt(statement.words[1].text)));
       return false;
@@ -133,21 +135,6 @@ class CodeVReader {
     statement.words.erase(statement.words.begin() + 1);
     return true;
   }
-  // Of S'IRIS' the surface whose label (SLB) is that, in whatever letters.
-  std::optional<std::size_t> labelled(const std::string& word) const {
-    const std::string label = word.substr(2, word.find(word[1], 2) - 2);
-    const auto found = std::find_if(surfaces_.begin(), surfaces_.end(), [&](const CodeVSurface& one) { return !label.empty() && upper(one.name) == label; });
-    return found == surfaces_.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - surfaces_.begin()));
-  }
-  // "S" and what is not a number: none.
-  std::optional<std::size_t> surface_number(const std::string& name) const {
-    if (name == "SO" || name == "S0") return 0;
-    if (name == "SI") return has_image_ ? std::optional(surfaces_.size() - 1) : std::nullopt;
-    const std::optional<Real> number = parse_real(std::string_view(name).substr(1));
-    if (!number || !(*number >= 1 && *number <= most_surfaces) || *number != std::trunc(*number)) return std::nullopt;
-    return static_cast<std::size_t>(*number);
-  }
-
   CodeVSurface& target() { return surfaces_[target_]; }
   Real value(const Statement& statement) const { return numbers_.number(statement, 1).value_or(0); }
 
@@ -160,7 +147,7 @@ class CodeVReader {
     } else if (name == "SI" && has_image_) {
       target_ = surfaces_.size() - 1;
     } else {
-      const std::optional<std::size_t> number = name == "S" || name == "SI" ? surfaces_.size() : surface_number(name).value_or(0);
+      const std::optional<std::size_t> number = name == "S" || name == "SI" ? surfaces_.size() : surface_named(name, surfaces_, has_image_).value_or(0);
       if (*number == 0 || *number > surfaces_.size()) return report_.broken(at, fmt::format("{} where S{} comes next", prescription::excerpt(name), surfaces_.size()));
       if (*number == surfaces_.size()) {
         if (has_image_) return report_.broken(at, "a surface behind the image surface (SI)");
@@ -179,6 +166,8 @@ class CodeVReader {
     target().radius.reset();
     if (is_radius && given != 0) target().radius = given;
     target().curvature = is_radius ? (given == 0 ? 0 : 1 / given) : given;
+    target().curvature_rounding = half_a_digit(word.text);
+    target().curvature_place = numbers_.place(word);
     if (given != 0 && !(std::abs(target().curvature) >= 1e-25L && std::abs(target().curvature) <= 1e25L))
       report_.broken(numbers_.place(word), fmt::format("'{}' is no {}", prescription::excerpt(word.text), is_radius ? "radius" : "curvature"));
   }
@@ -258,6 +247,7 @@ class CodeVReader {
     if (statement.words.size() < 2 || !upper(statement.words[1].text).starts_with("N")) lens_.solves_image = numbers_.place(statement);
   }
 
+  void take_pickup(const Statement& statement) { pickups_.push_back(statement); }
   void take_radius(const Statement& statement) {
     if (numbers_.number(statement, 1)) set_radius(statement, statement.words[1], true);
   }
@@ -279,14 +269,16 @@ class CodeVReader {
   void take_name(const Statement& statement) {
     if (statement.words.size() > 1) target().name = statement.words[1].text;
   }
-  void take_stop(const Statement&) {
+  void take_stop(const Statement& statement) {
     for (CodeVSurface& one : surfaces_) one.stop = false;
     target().stop = true;
+    stop_place_ = numbers_.place(statement);
   }
   void take_sphere(const Statement&) { target().conic = 0, target().powers.clear(); }
   void take_nothing(const Statement&) {}
   void take_conic(const Statement& statement) {
     target().conic = value(statement);
+    target().shape_place = numbers_.place(statement);
     if (!surface::conic_constants.contains(static_cast<double>(target().conic)))
       report_.broken(numbers_.place(statement), fmt::format("a conic constant lies from {:g} to {:g}", surface::conic_constants.low, surface::conic_constants.high));
   }
@@ -295,6 +287,7 @@ class CodeVReader {
     const char letter = statement.name()[0];
     const int power_of_r = letter == 'J' ? 20 : 4 + 2 * (letter - 'A');
     target().powers[power_of_r] = value(statement);
+    target().shape_place = numbers_.place(statement);
   }
   void take_fresnel(const Statement& statement) {
     if (value(statement) != 0) report_.left_out(numbers_.place(statement), "CUF: a Fresnel surface");
@@ -323,8 +316,11 @@ class CodeVReader {
   }
   void take_decenter_kind(const Statement& statement) {
     using Decenter = CodeVSurface::Decenter;
-    target().decenter = statement.name() == "DAR" ? Decenter::and_return : statement.name() == "REV" ? Decenter::reverse : Decenter::bend;
-    target().decenter_place = numbers_.place(statement);
+    const Decenter kind = statement.name() == "DAR" ? Decenter::and_return : statement.name() == "REV" ? Decenter::reverse : Decenter::bend;
+    if (target().decenter != Decenter::basic && target().decenter != kind)
+      return report_.broken(numbers_.place(statement), fmt::format("{}: the surface is decentered in another way in line {}", statement.name(), target().decenter_kind_place.line), "it is one of DAR, REV and BEN");
+    target().decenter = kind;
+    target().decenter_place = target().decenter_kind_place = numbers_.place(statement);
   }
 
   void finish();
@@ -338,8 +334,9 @@ class CodeVReader {
   bool is_radius_mode_ = true, has_radius_mode_ = false, has_unit_ = false, has_image_ = false, has_fields_ = false, has_glass_code_ = false, is_in_private_catalog_ = false;
   Statement aperture_;
   std::optional<int> reference_;
-  Place reference_place_;
+  Place reference_place_, stop_place_;
   std::vector<Real> x_fields_, y_fields_;
+  std::vector<Statement> pickups_;
   std::vector<CodeVSurface> surfaces_{1};  // the object first
   std::size_t target_ = 0;
 };
@@ -362,8 +359,12 @@ void CodeVReader::finish() {
     if (lens_.object_distance == 0) report_.broken(object.thickness_place, "the object stands at the first surface");
     if (object.curvature != 0) report_.left_out(object.place.line > 0 ? object.place : object.thickness_place, "SO: a curved object");
   }
+  for (const Statement& pickup : pickups_) check_pickup(pickup, surfaces_, has_image_, numbers_, report_);
   lens_.object_medium = object.medium;
   if (object.mirror_place) report_.broken(*object.mirror_place, "the object is a mirror");
+  const bool is_aspheric = (object.conic != 0 && object.curvature != 0) || std::any_of(object.powers.begin(), object.powers.end(), [](const auto& one) { return one.second != 0; });
+  if (is_aspheric) report_.left_out(object.shape_place, "SO: an aspheric object");
+  if (object.circle_place.line > 0) report_.left_out(object.circle_place, "CIR: an aperture of the object");
   if (object.decenter_place.line > 0) report_.left_out(object.decenter_place, "SO: a decentered object");
   for (std::size_t i = 1; i < surfaces_.size(); ++i) lens_.surfaces.push_back(surface_of(surfaces_[i], unit_, report_));
   Surface& image = lens_.surfaces.back();
@@ -371,8 +372,8 @@ void CodeVReader::finish() {
   lens_.surfaces[lens_.surfaces.size() - 2].thickness += lens_.image_shift;
   if (image.medium.kind != Medium::Kind::air) report_.warning(image.medium.place, "SI: what is behind the image surface is left out: no ray gets there");
   image.medium = {};
-  if (object.stop) report_.broken({file_}, "the object is the stop");
-  const bool has_stop = std::any_of(lens_.surfaces.begin(), lens_.surfaces.end(), [](const Surface& one) { return one.stop; });
+  if (object.stop) report_.broken(stop_place_, "the object is the stop", "STO stands behind the S of its surface, or names it: STO S3");
+  const bool has_stop = object.stop || std::any_of(lens_.surfaces.begin(), lens_.surfaces.end(), [](const Surface& one) { return one.stop; });
   if (!has_stop) report_.warning({file_}, "no STO: surface 1 is taken as the stop");
   if (!has_stop) lens_.surfaces.front().stop = true;
   lens_.aims = !lens_.surfaces.front().stop;  // that program aims every ray; a stop that stands first is its own pupil

@@ -17,7 +17,7 @@ Surface surface_of(const CodeVSurface& given, Real unit_mm, Report& report) {
   }
   surface.curvature = given.curvature / unit_mm;
   surface.thickness = given.thickness * unit_mm;
-  const double radius = given.radius ? static_cast<double>(*given.radius * unit_mm) : radius_of(surface.curvature);
+  const double radius = given.radius ? static_cast<double>(*given.radius * unit_mm) : radius_of(surface.curvature, given.curvature_rounding / unit_mm);
   Indexed coefficients;
   for (const auto& [k, a] : given.powers)
     if (const double one = kept(a * power(unit_mm, 1 - k)); one != 0) coefficients[k] = one;

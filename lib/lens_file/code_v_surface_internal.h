@@ -23,13 +23,15 @@ struct CodeVSurface {
   bool stop = false;
   std::optional<Real> radius;  // where it was given so
   Real curvature = 0, conic = 0, thickness = 0;
-  Place conic_place, thickness_place;
+  Real curvature_rounding = 0;  // half a unit of its last digit, where it was given
+  Place curvature_place, shape_place, thickness_place;  // shape: conic constant and powers
   std::map<int, Real> powers;  // coefficients of powers of r
   Medium medium;                      // what follows, where no mirror stands
   std::optional<Place> mirror_place;  // of a mirror, REFL
   Real semi_diameter = 0, inner_semi_diameter = 0;  // 0: none
   Place circle_place;
   enum class Decenter { basic, and_return, reverse, bend } decenter = Decenter::basic;
+  Place decenter_kind_place;  // of DAR, REV, BEN
   numerics::Vec3<Real> shift{}, tilt{};  // tilt as in the file
   Place decenter_place;
 };

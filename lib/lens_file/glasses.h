@@ -4,6 +4,9 @@
 // A name counts as it is; else the medium whose name is the same but for capital letters, `-`, `_` and blanks (CODE V's NBK7 is N-BK7), then without a last part
 // `_MAKER` (NBK7_SCHOTT), then by the few names of other programs for what is here under another one. Where the medium that is found so is not the
 // glass of a maker but a substance, whose formula may be another source's, a warning says so.
+//
+// Makers give the same name to different glasses (F5 is Schott's and CDGM's). So a glass `_MAKER` whose sources name other makers, and not that one, is unknown; where
+// they name none, a warning says so. Where the file only lists catalogues, none of them of the maker here, or states an nd or Vd that is another one, a warning says so.
 #pragma once
 
 #include <span>

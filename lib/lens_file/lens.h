@@ -36,6 +36,11 @@ struct Form {
   std::vector<Item> items;
 };
 
+// A number as a file has it, and half a unit of its last digit; 0: it has none.
+struct Stated {
+  double value = 0, rounding = 0;
+};
+
 struct Medium {
   enum class Kind { air, mirror, glass, index, nd_vd, gradient };
   Kind kind = Kind::air;
@@ -43,6 +48,7 @@ struct Medium {
   double index = 1, vd = 0;   // `index`, or nd
   Form gradient;
   Place place;
+  Stated stated_nd{}, stated_vd{};  // of a glass, where the file has them beside its name
 };
 
 // A change of the frame: the origin is moved, then the axes are turned about the new x, the new y, the new z, right-handed. The other way round it is the
@@ -99,6 +105,8 @@ struct Lens {
 
   // To the vertex of the next surface, as if no move turned the axis.
   Real axial_thickness(std::size_t i) const { return surfaces[i].thickness + (i + 1 < surfaces.size() ? surfaces[i + 1].thickness_before : 0); }
+
+  std::vector<std::string> glass_catalogs;  // that the file says its glasses are of
 
   std::vector<std::string> remarks;  // sentences for the head comment
 };

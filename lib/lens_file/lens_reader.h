@@ -24,13 +24,13 @@ bool is_lens_file(const std::string& file);
 std::optional<Lens> read_lens(const std::string& file, Report& report);
 
 // Zemax OpticStudio, sequential (.zmx): lines of an operand of four letters and what belongs to it; those of a surface are indented behind SURF. There is no public
-// specification; the operands are those that public files have. What is read: VERS MODE NAME UNIT, ENPD FNUM OBNA FLOA, FTYP XFLN YFLN, WAVM WAVL PWAV, ENVD GCAT RAIM VDXN
-// VDYN VCXN VCYN VANN MNUM, SURF TYPE STOP CURV CONI DISZ GLAS DIAM PARM XDAT COMM CLAP FLAP OBSC OBDC GDAT GARR. Curvatures are 1/unit, radii PARM 1 of BICONICX and TOROIDAL.
+// specification; the operands are those that public files have. What is read: VERS MODE NAME UNIT, ENPD FNUM OBNA FLOA, FTYP XFLN YFLN, WAVM WAVL PWAV, ENVD GCAT GFAC RAIM VDXN
+// VDYN VCXN VCYN VANN MNUM, SURF TYPE STOP CURV CONI DISZ GLAS DIAM PARM XDAT COMM IGNR CLAP FLAP OBSC OBDC GDAT GARR. Curvatures are 1/unit, radii PARM 1 of BICONICX and TOROIDAL.
 // A tilt of a coordinate break (PARM 3 to 5) turns right-handed, in degrees: positive about x, +y turns toward +z (Zemax, "Rotation Matrix and Tilt About X/Y/Z").
 std::optional<Lens> read_zemax(const std::string& file, const std::string& text, Report& report);
 
 // CODE V sequences (.seq): commands of up to three letters, separated by `;` and line ends; `!` starts a comment, `&` at a line's end goes on. What is read: RDM LEN
-// TIT DIM, EPD FNO NA NAO, WL REF, XAN YAN XOB YOB, SO S SI and RDY CUY THI GLA RMD SLB STO, SPH CON ASP K A to J, CIR, XDE YDE ZDE ADE BDE CDE with DAR REV BEN, PIM. A
+// TIT DIM, EPD FNO NA NAO, WL REF, XAN YAN XOB YOB, SO S SI and RDY CUY THI GLA RMD SLB STO, SPH CON ASP K A to J, CIR, XDE YDE ZDE ADE BDE CDE with DAR REV BEN, PIM PIK. A
 // command may name its surface (THI S3 5). ADE and BDE turn left-handed, CDE right-handed.
 std::optional<Lens> read_code_v(const std::string& file, const std::string& text, Report& report);
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -11,6 +12,7 @@ namespace sagitta::lens_file {
 namespace {
 
 constexpr int most_digits = 17;  // that tell any double from the others
+constexpr Real half_of_the_tenth_digit = 5e-10L;
 
 Real real_of(const std::string& decimal) {
   Real value = 0;
@@ -33,6 +35,12 @@ std::optional<Real> parse_real(std::string_view text) {
   return std::abs(value) < smallest_number ? 0 : value;
 }
 
+Real half_a_digit(std::string_view text) {
+  const std::size_t end = std::min(text.find_first_of("eE"), text.size()), point = text.substr(0, end).find('.');
+  const Real mantissa = real_of(fmt::format("5e{}", -1 - static_cast<int>(point == std::string_view::npos ? 0 : end - point - 1)));
+  return end == text.size() ? mantissa : mantissa * real_of("1" + std::string(text.substr(end)));
+}
+
 double kept(Real value) { return std::abs(value) < smallest_number ? 0 : static_cast<double>(value); }
 
 double shortest_within(Real value, Real error) {
@@ -44,13 +52,13 @@ double shortest_within(Real value, Real error) {
   return static_cast<double>(value);
 }
 
-double radius_of(Real curvature) {
+double radius_of(Real curvature, Real rounding) {
   const double c = static_cast<double>(curvature);
   if (c == 0) return std::numeric_limits<double>::infinity();
   const Real radius = 1 / curvature;
   for (int digits = 1; digits <= most_digits; ++digits) {
     const double decimal = static_cast<double>(real_of(fmt::format("{:.{}e}", radius, digits - 1)));
-    if (1 / decimal == c) return decimal;
+    if (1 / decimal == c || (rounding <= half_of_the_tenth_digit * std::abs(curvature) && std::abs(1 / Real(decimal) - curvature) <= rounding)) return decimal;
   }
   return static_cast<double>(radius);
 }

@@ -10,6 +10,7 @@
 
 #include "lib/lens_file/lens_reader.h"
 #include "lib/lens_file/lens_text_internal.h"
+#include "lib/lens_file/zemax_glass_internal.h"
 #include "lib/lens_file/zemax_surface_internal.h"
 #include "lib/prescription/keys.h"
 
@@ -19,9 +20,10 @@ namespace {
 // Operands that say nothing about where rays go.
 constexpr std::array without_optics{
     // of the system: notes, files, language, environment of coatings, scattering and polarisation, weights, settings of the program
-    "NOTE", "PFIL", "LANG", "GFAC", "PUSH", "SDMA", "ROPD", "PICB", "POLS", "GLRS", "GSTD", "NSCD", "COFN", "FWGN", "FWGT", "WWGT", "WWGN", "FCOM", "HYPR", "PUPD", "EFFL", "TOTR", "PMAG", "ISNA",
-    // of a surface: drawing, coating, colour, mirror substrate, physical optics, edges, tool and import notes
-    "HIDE", "SLAB", "POPS", "MIRR", "COAT", "FIMP", "GLCZ", "SCOL", "TRAC", "CHZN", "CSDN", "NSOA",
+    "NOTE", "PFIL", "LANG", "PUSH", "SDMA", "ROPD", "PICB", "POLS", "GLRS", "GSTD", "NSCD", "COFN", "FWGN", "FWGT", "WWGT", "WWGN", "FCOM", "HYPR", "PUPD", "EFFL", "TOTR", "PMAG", "ISNA",
+    "AUTH", "DBDT", "IWDP", "OMMA",
+    // of a surface: drawing and mechanical size, coating, colour, mirror substrate, physical optics, edges, tool and import notes, its number in other programs
+    "MEMA", "OEMA", "SSID", "LUID", "EERA", "HIDE", "SLAB", "POPS", "MIRR", "COAT", "FIMP", "GLCZ", "SCOL", "TRAC", "CHZN", "CSDN", "NSOA",
     // of a surface: variables, pickups and solves, whose values stand in their own lines
     "VDSZ", "MAZH", "PZUP", "PKUP", "PPAR", "VPAR", "VCON", "EDGE", "MARA", "CFHZ",
     // tolerances, merit function, configurations
@@ -91,11 +93,11 @@ class ZemaxReader {
         Operand{"YFLN", &Z::take_fields}, Operand{"XFLD", &Z::take_fields}, Operand{"YFLD", &Z::take_fields}, Operand{"WAVM", &Z::take_wavelength}, Operand{"WAVL", &Z::take_wavelengths},
         Operand{"PWAV", &Z::take_primary}, Operand{"VDXN", &Z::take_vignetting}, Operand{"VDYN", &Z::take_vignetting}, Operand{"VCXN", &Z::take_vignetting},
         Operand{"VCYN", &Z::take_vignetting}, Operand{"VANN", &Z::take_vignetting}, Operand{"ENVD", &Z::take_environment}, Operand{"GCAT", &Z::take_catalogs},
-        Operand{"RAIM", &Z::take_ray_aiming}, Operand{"MNUM", &Z::take_configurations}, Operand{"SURF", &Z::take_surface}};
+        Operand{"GFAC", &Z::take_apodization}, Operand{"RAIM", &Z::take_ray_aiming}, Operand{"MNUM", &Z::take_configurations}, Operand{"SURF", &Z::take_surface}};
     static constexpr std::array of_surface{
         Operand{"TYPE", &Z::take_type}, Operand{"STOP", &Z::take_stop}, Operand{"CURV", &Z::take_value}, Operand{"CONI", &Z::take_value}, Operand{"DISZ", &Z::take_thickness},
         Operand{"GLAS", &Z::take_glass}, Operand{"DIAM", &Z::take_semi_diameter}, Operand{"PARM", &Z::take_parameter}, Operand{"XDAT", &Z::take_parameter}, Operand{"COMM", &Z::take_comment},
-        Operand{"CLAP", &Z::take_clip}, Operand{"FLAP", &Z::take_clip}, Operand{"OBSC", &Z::take_clip}, Operand{"OBDC", &Z::take_clip_decenter},
+        Operand{"IGNR", &Z::take_ignored}, Operand{"CLAP", &Z::take_clip}, Operand{"FLAP", &Z::take_clip}, Operand{"OBSC", &Z::take_clip}, Operand{"OBDC", &Z::take_clip_decenter},
         Operand{"GDAT", &Z::take_grid}, Operand{"GARR", &Z::take_grid_node}};
     const auto is_it = [&](const auto& one) { return one.name == statement.name(); };
     if (const auto found = std::find_if(of_system.begin(), of_system.end(), is_it); found != of_system.end()) return (this->*found->take)(statement);
@@ -116,7 +118,8 @@ class ZemaxReader {
   ZemaxSurface& surface() { return surfaces_.back(); }
   PlacedNumber placed(const Statement& statement, std::size_t i) const {
     const std::optional<Real> value = numbers_.number(statement, i);
-    return {value.value_or(0), i < statement.words.size() ? numbers_.place(statement.words[i]) : numbers_.place(statement)};
+    if (!value) return {0, i < statement.words.size() ? numbers_.place(statement.words[i]) : numbers_.place(statement)};
+    return {*value, numbers_.place(statement.words[i]), half_a_digit(statement.words[i].text)};
   }
 
   void take_version(const Statement& statement) { lens_.program = fmt::format("a Zemax lens file (VERS {})", prescription::excerpt(statement.rest)); }
@@ -146,6 +149,9 @@ class ZemaxReader {
       report_.left_out(numbers_.place(statement.words[2]), "FTYP: an object space that is telecentric", "its pupil is computed from the stop instead");
     if (statement.words.size() > 3) field_count_ = static_cast<std::size_t>(numbers_.whole(statement, 3, 0, most_fields).value_or(0));
     if (statement.words.size() > 4) wavelength_count_ = static_cast<std::size_t>(numbers_.whole(statement, 4, 0, most_wavelengths).value_or(0));
+    // The fifth and sixth are of normalised fields and of solves; the seventh is what optiland's reader takes it for; the eighth is the number of fields again.
+    if (statement.words.size() > 7 && numbers_.number(statement, 7).value_or(0) != 0)
+      report_.left_out(numbers_.place(statement.words[7]), "FTYP: an image space that is afocal", "rays are traced to the image surface, and not made parallel");
   }
   void take_fields(const Statement& statement) {
     (statement.name()[0] == 'X' ? x_fields_ : y_fields_) = numbers_.list(statement, 1).value_or(std::vector<Real>{});
@@ -175,11 +181,18 @@ class ZemaxReader {
     if (celsius && atmospheres && (*celsius != 20 || *atmospheres != 1))
       report_.left_out(numbers_.place(statement), "ENVD: a temperature other than 20 C or a pressure other than 1 atm", "indices are those of the catalogues");
   }
-  void take_catalogs(const Statement& statement) { lens_.remarks.push_back(fmt::format("Its glasses are of {}.", prescription::excerpt(statement.rest))); }
+  void take_catalogs(const Statement& statement) {
+    for (std::size_t i = 1; i < statement.words.size(); ++i) lens_.glass_catalogs.push_back(statement.words[i].text);
+    lens_.remarks.push_back(fmt::format("Its glasses are of {}.", prescription::excerpt(statement.rest)));
+  }
   void take_ray_aiming(const Statement& statement) {
     const int how = statement.words.size() > 2 ? numbers_.whole(statement, 2, 0, 2).value_or(0) : 0;
     lens_.aims = how == 2;
     if (how == 1) report_.left_out(numbers_.place(statement.words[2]), "RAIM: paraxial ray aiming", "`aim: stop` in aperture aims real rays");
+  }
+  // GFAC type factor: 0 is uniform.
+  void take_apodization(const Statement& statement) {
+    if (numbers_.number(statement, 1).value_or(0) != 0) report_.left_out(numbers_.place(statement), "GFAC: an apodized pupil", "every ray counts alike here");
   }
   void take_configurations(const Statement& statement) {
     if (numbers_.whole(statement, 1, 0, 10000).value_or(0) > 1) report_.left_out(numbers_.place(statement), "MNUM: other configurations than the one of the surfaces");
@@ -203,23 +216,16 @@ class ZemaxReader {
     surface().infinite = statement.words.size() > 1 && statement.words[1].text == "INFINITY";
     surface().thickness = surface().infinite ? PlacedNumber{0, numbers_.place(statement)} : placed(statement, 1);
   }
-  // GLAS name, code (1: a model), pickup, nd, Vd, dPgF, ...
   void take_glass(const Statement& statement) {
-    const Place at = numbers_.place(statement);
-    if (statement.words.size() < 2) return report_.broken(at, "GLAS: the name of the glass is missing");
-    const std::string& name = statement.words[1].text;
-    const bool is_model = name == "___BLANK" || (statement.words.size() > 2 && statement.words[2].text == "1");
-    if (name == "MIRROR") return void(surface().medium = {Medium::Kind::mirror, {}, 1, 0, {}, at});
-    if (!is_model) return void(surface().medium = {Medium::Kind::glass, name, 1, 0, {}, at});
-    const std::optional<Real> nd = numbers_.number(statement, 4), vd = statement.words.size() > 5 ? numbers_.number(statement, 5) : Real(0);
-    if (!nd || !vd) return;
-    const double index = static_cast<double>(*nd), abbe = static_cast<double>(*vd);
-    if (!(prescription::index_range.contains(index) && abbe >= 0)) return report_.broken(at, fmt::format("GLAS: a model glass of nd {} and Vd {}", number_text(index), number_text(abbe)));
-    if (statement.words.size() > 6 && numbers_.number(statement, 6).value_or(0) != 0)
-      report_.left_out(numbers_.place(statement.words[6]), "GLAS: dPgF, the partial dispersion of a model glass", "give its index as a table or a formula in a file NAME.yml, and NAME here");
-    surface().medium = {abbe == 0 ? Medium::Kind::index : Medium::Kind::nd_vd, {}, index, abbe, {}, at};
-    if (abbe != 0 && !has_model_glass_) lens_.remarks.push_back("Its model glasses are two-term formulas through nd and Vd here, which differ between and beyond the F and C lines from OpticStudio's own.");
-    has_model_glass_ |= abbe != 0;
+    const std::optional<Medium> medium = zemax_glass(statement, numbers_, report_);
+    if (!medium) return;
+    surface().medium = *medium;
+    if (medium->kind != Medium::Kind::nd_vd || has_model_glass_) return;
+    lens_.remarks.push_back("Its model glasses are two-term formulas through nd and Vd here, which differ between and beyond the F and C lines from OpticStudio's own.");
+    has_model_glass_ = true;
+  }
+  void take_ignored(const Statement& statement) {
+    if (numbers_.number(statement, 1).value_or(0) != 0) report_.left_out(numbers_.place(statement), "IGNR: a surface that is ignored, and stands here", "delete it in OpticStudio");
   }
   void take_semi_diameter(const Statement& statement) { surface().semi_diameter = placed(statement, 1); }
   void take_parameter(const Statement& statement) {

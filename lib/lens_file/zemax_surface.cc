@@ -24,7 +24,7 @@ class Reader {
 
   Real unit() const { return unit_; }
   std::string grid_file() const { return grid_file_of(given_, unit_, report_); }
-  double radius() const { return radius_of(given_.curvature.value / unit_); }
+  double radius() const { return radius_of(given_.curvature.value / unit_, given_.curvature.rounding / unit_); }
   double conic() const { return static_cast<double>(given_.conic.value); }
   // A length in mm.
   double length(Real value) const { return static_cast<double>(value * unit_); }
@@ -71,6 +71,19 @@ class Reader {
     else
       found.normalization_radius = length(radius.value);
     return found;
+  }
+
+  // PARM 0 of Zernike terms: 1 where they count everywhere, as here; 0 where they are left out beyond the radius of normalisation. Older files have none.
+  void extrapolate(const Terms& terms) {
+    const PlacedNumber extrapolates = parm(0);
+    if (extrapolates.place.line == 0 || extrapolates.value == 1 || terms.coefficients.empty()) return;
+    if (extrapolates.value != 0) return leave_out(extrapolates, fmt::format("PARM 0 of {} is neither 0 nor 1", given_.type));
+    const bool is_clipped = given_.clip && given_.clip->operand != "OBSC" && given_.clip->most > 0;
+    const double reach = length(is_clipped ? given_.clip->most : given_.semi_diameter ? given_.semi_diameter->value : 0), radius = terms.normalization_radius;
+    if (reach > 0 && reach <= radius) return;
+    report_.warning(extrapolates.place, fmt::format("PARM 0 of {}: the terms end at the radius of normalisation, {} mm, and go on here; {}", given_.type, number_text(radius),
+                                                    reach > 0 ? fmt::format("the surface reaches to {} mm", number_text(reach)) : "how far the surface reaches is not known"),
+                    "an aperture (CLAP) of at most that radius keeps rays off what differs");
   }
 
   void leave_out(const PlacedNumber& number, const std::string& what) {
@@ -145,6 +158,7 @@ Form xy_polynomial(Reader& from) {
 
 Form zernike(Reader& from, const char* indexing, int most) {
   const Reader::Terms terms = from.terms(most, um_per_mm);
+  from.extrapolate(terms);
   return on_conic(from, "zernike", {{"normalization_radius_mm", terms.normalization_radius}, {"indexing", indexing}, {"coefficients_um", terms.coefficients}},
                   terms.coefficients.empty());
 }

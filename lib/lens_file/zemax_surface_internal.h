@@ -16,6 +16,7 @@ namespace sagitta::lens_file {
 struct PlacedNumber {
   Real value = 0;
   Place place;
+  Real rounding = 0;  // half a unit of its last digit
 };
 
 // The heights that stand in the file.

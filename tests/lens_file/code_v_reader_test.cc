@@ -88,6 +88,24 @@ TEST(CodeVGlass, is_a_name_with_its_maker_or_a_code) {
   EXPECT_THAT(with("1.517").messages, HasSubstr("lens.seq:15:8: error: '1.517' is neither a glass nor a glass code"));
 }
 
+// 2026-11-23: F5_CDGM, whose nd is 1.624353, was taken as Schott's F5, of 1.60342, without a word.
+TEST(CodeVGlass, is_not_another_maker_s_of_the_same_name) {
+  const prescription::test::TemporaryFolder folder;
+  const auto with = [&](const std::string& glass, const std::vector<std::string>& catalogs) {
+    const Imported run = import({folder.write("lens.seq", sequence("S 50 4 " + glass + "\nSTO\nS 0 3\nSI 0 0\n")), folder.path() + "/out.yaml", catalogs, false});
+    return prescription::test::text_of(run.findings) + run.prescription.value_or("");
+  };
+  for (const char* glass : {"F5_CDGM", "F2_CDGM", "N-BK7_OHARA", "NBK7_S"})
+    EXPECT_THAT(with(glass, {}), HasSubstr("lens.seq:15:8: error: unknown glass '" + std::string(glass) + "'\n  hint: '" + (glass[0] == 'F' ? std::string(glass, 2) : "N-BK7") +
+                                           "' is another maker's here; --catalog FILE.agf looks in a maker's catalogue")) << glass;
+  for (const char* glass : {"F5_SCHOTT", "F5_Schott", "F5_schott"}) EXPECT_THAT(with(glass, {}), AllOf(HasSubstr("medium: F5}"), Not(HasSubstr("warning")))) << glass;
+  const std::string lines = "NM F5 2 624359 1.624353 35.938 0 1\nCD 1.3 0.009 0.2 0.045 0.9 110 0 0 0 0\nLD 0.35 2.3\n";
+  const std::string of_the_maker = folder.write("cdgm.agf", lines), of_another = folder.write("one.agf", "CC Schott, 2020\n" + lines), unnamed = folder.write("mine.agf", lines);
+  EXPECT_THAT(with("F5_CDGM", {of_the_maker}), AllOf(HasSubstr("medium: F5}"), Not(HasSubstr("warning"))));
+  EXPECT_THAT(with("F5_CDGM", {of_another}), HasSubstr("error: unknown glass 'F5_CDGM'"));
+  EXPECT_THAT(with("F5_CDGM", {unnamed}), AllOf(HasSubstr("medium: F5}"), HasSubstr("warning: 'F5_CDGM' is taken as F5, whose source names no maker")));
+}
+
 // ADE and BDE turn left-handed, CDE right-handed.
 TEST(CodeVDecenter, with_return_is_the_surface_s_own) {
   const auto model = model_of("lens.seq", sequence("S 0 10\nSTO\nS 50 4\n DAR; XDE 1; YDE 2; ZDE 3; ADE 10; BDE 20; CDE 30\nS 0 3\nSI 0 0\n"));
@@ -166,6 +184,66 @@ TEST(CodeVFile, has_defaults_that_are_told) {
   EXPECT_EQ(run.messages, "lens.seq:1:1: warning: no REF: the middle wavelength is taken as the primary one\nlens.seq:1:1: warning: no STO: surface 1 is taken as the stop\n");
   EXPECT_THAT(run.prescription, HasSubstr("primary_nm: 587.6"));
   EXPECT_THAT(run.prescription, HasSubstr("{stop: true, conic: {radius_mm: 50}"));
+}
+
+// 2026-11-23: "'HMY' is not a number", also in part.
+TEST(CodeVFile, has_numbers_for_its_solves) {
+  const auto with = [](const std::string& front, const std::string& lines, bool takes_parts = false) { return import_text("lens.seq", sequence(front + "\nSTO\n" + lines + "\nS -80 60\nSI 0 0\n"), takes_parts); };
+  struct Case {
+    const char *front, *lines, *expected;
+  };
+  for (const auto& [front, lines, expected] : {Case{"S 50 4", "THI HMY 0.0", "lens.seq:17:1: note: THI HMY: the solve is not kept; the number in line 15 is\n"},
+                                               Case{"S 50 4", "CUY umy -0.1", "lens.seq:17:1: note: CUY UMY: the solve is not kept; the number in line 15 is\n"},
+                                               Case{"S 50 4", "RDY S1 ICX 0.2", "lens.seq:17:1: note: RDY ICX: the solve is not kept; the number in line 15 is\n"},
+                                               Case{"S 50 4", "THI S1 PIM", "lens.seq:17:1: error: THI PIM is not known; the number in line 15 stands for it\n"},
+                                               Case{"S 50 0", "THI HMY 0.0", "lens.seq:17:1: error: THI HMY: a solve, and the surface has no number that it was solved to\n"},
+                                               Case{"S 0 4", "CUY UMY 0.1", "lens.seq:17:1: error: CUY UMY: a solve, and the surface has no number that it was solved to\n"}}) {
+    const Outcome run = with(front, lines), part = with(front, lines, true);
+    EXPECT_THAT(run.messages, ::testing::StartsWith(expected)) << lines;
+    EXPECT_EQ(run.prescription.empty(), run.messages.find("error") != std::string::npos);
+    const std::string plain = with(front, "").prescription;
+    EXPECT_EQ(part.prescription.substr(part.prescription.find("surfaces:")), plain.substr(plain.find("surfaces:"))) << lines;
+  }
+}
+
+// 2026-11-23: pickups were passed over in silence, also where the numbers of the file are others.
+TEST(CodeVFile, has_the_numbers_of_its_pickups) {
+  const auto with = [](const std::string& pickup, bool takes_parts = false) {
+    return import_text("lens.seq", sequence("S 50 4\nSTO\nS -50 60\n ADE 3\nS 25 -60\n ADE 6.5; K -1\nSI 0 0\nPIK " + pickup + "\n"), takes_parts);
+  };
+  for (const char* same : {"RDY S2 Z1 RDY S1 Z1 -1.0", "RDY S2 S1 -1", "CUY S3 S1 2", "thi s3 z1 thi s2 z1 -1.0", "THI S2 THI S1 1.0 56", "ADE S3 ADE S2 2 0.5", "ADE S3 S2 2 .500000001", "THI SI THI S1 0 0"}) EXPECT_EQ(with(same).messages, "") << same;
+  struct Case {
+    const char *pickup, *expected;
+  };
+  for (const auto& [pickup, expected] : {Case{"CUY S2 S1 1", "error: PIK: CUY S2 is -0.02 in the file, where the pickup from CUY S1 makes it 0.02\n  hint: a lens that CODE V saves has the number that was picked up\n"},
+                                         Case{"THI S3 Z1 THI S2 Z1", "error: PIK: THI S3 is -60 in the file, where the pickup from THI S2 makes it 60\n"},
+                                         Case{"ADE S3 ADE S2 2", "error: PIK: ADE S3 is 6.5 in the file, where the pickup from ADE S2 makes it 6\n"}, Case{"K S1 K S3", "error: PIK: K S1 is 0 in the file"},
+                                         Case{"GLA S2 Z1 GLA S1 Z1", "note: PIK GLA S2 Z1 GLA S1 Z1: the pickup is neither kept nor checked; the number in the file is kept\n"}, Case{"THI S9 S1", "note: PIK THI S9 S1: the pickup is"},
+                                         Case{"THI S3 S2 x", "note: PIK THI S3 S2 x: "}, Case{"THI S3 S2 -1 0 0", "note: "}, Case{"THI S3", "note: "}, Case{"", "note: "}, Case{"THI S3 S", "note: "}}) {
+    EXPECT_THAT(with(pickup).messages, ::testing::StartsWith(std::string("lens.seq:22:1: ") + expected)) << pickup;
+    EXPECT_NE(with(pickup, true).prescription, "") << pickup;
+  }
+}
+
+// 2026-11-23: dropped in silence, but for a curvature.
+TEST(CodeVFile, tells_of_an_object_that_is_no_plane) {
+  const auto with = [](const std::string& lines) {
+    std::string text = sequence("S 50 4\nSTO\nSI 0 0\n");
+    return import_text("lens.seq", text.replace(text.find("SO    0.0 0.1e14"), 16, "SO 0 100\n" + lines)).messages;
+  };
+  EXPECT_EQ(with("CIR 5"), "lens.seq:15:1: error: CIR: an aperture of the object\n");
+  EXPECT_EQ(with("ASP; K -1; A 0; B 1e-4"), "lens.seq:15:17: error: SO: an aspheric object\n");
+  EXPECT_EQ(with("RDY 20; K -1"), "lens.seq:14:6: error: SO: a curved object\nlens.seq:15:9: error: SO: an aspheric object\n");
+  EXPECT_EQ(with("ASP; K -1; A 0"), "");
+}
+
+// 2026-11-23: the object as the stop was told at 1:1, and of DAR and BEN the last was taken without a word.
+TEST(CodeVFile, tells_its_faults_where_they_are) {
+  std::string text = sequence("S 50 4\nS -80 60\nSI 0 0\n");
+  EXPECT_EQ(import_text("lens.seq", text.replace(text.find("SO "), 3, "STO\nSO ")).messages, "lens.seq:14:1: error: the object is the stop\n  hint: STO stands behind the S of its surface, or names it: STO S3\n");
+  const auto with = [](const std::string& lines) { return import_text("lens.seq", sequence("S 50 4\nSTO\nS -80 60\n" + lines + "\nSI 0 0\n")).messages; };
+  EXPECT_EQ(with("ADE 5; DAR\nBEN"), "lens.seq:19:1: error: BEN: the surface is decentered in another way in line 18\n  hint: it is one of DAR, REV and BEN\n");
+  EXPECT_EQ(with("ADE 5; DAR\nDAR"), "");
 }
 
 TEST(CodeVFile, partly_understood_lists_what_is_left_out) {

@@ -47,6 +47,21 @@ TEST(Radius, has_the_fewest_digits_whose_inverse_is_the_curvature) {
   EXPECT_GT(exact, 1500);
 }
 
+// 2026-11-23: 0.0152045005321575 became 65.77000000000008, which no one wrote.
+TEST(Radius, has_the_fewest_digits_that_a_curvature_of_ten_digits_or_more_can_mean) {
+  struct Case {
+    const char *curvature, *radius;
+  };
+  for (const auto& [curvature, radius] : {Case{"0.0152045005321575", "65.77"}, Case{"-1.78635226866738e-2", "-55.98"}, Case{"-0.0035644270183568", "-280.55"}, Case{"+8.496176720475789867E-02", "11.769999999999994"},
+                                          // one unit more in its last digit is another radius
+                                          Case{"0.0152045005321576", "65.7699999999996"}, Case{"0.02000000000", "50"},
+                                          // fewer digits are what was meant
+                                          Case{"0.1", "10"}, Case{"0.33", "3.0303030303030303"}, Case{"0.3333333", "3.00000030000003"}, Case{"0.333333333", "3.000000003"}, Case{"0.3333333333", "3"}, Case{"3", "0.3333333333333333"}})
+    EXPECT_EQ(number_text(radius_of(*parse_real(curvature), half_a_digit(curvature))), radius) << curvature;
+  EXPECT_EQ(half_a_digit("-1.25E+02"), 0.5L);
+  EXPECT_EQ(half_a_digit("12"), 0.5L);
+}
+
 TEST(Rounded, is_the_shortest_decimal_within_the_error) {
   EXPECT_EQ(shortest_within(-8.438645L + 1e-18L, 1e-17L), -8.438645);
   EXPECT_EQ(shortest_within(1e-19L, 1e-18L), 0);

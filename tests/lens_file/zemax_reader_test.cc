@@ -37,6 +37,36 @@ surfaces:
 )yaml");
 }
 
+// 2026-11-23: MEMA, OEMA, OMMA, DBDT, SSID, LUID, EERA, IWDP, AUTH and IGNR 0, which every file of later versions has, were refused as not known.
+TEST(ZemaxFile, may_be_of_any_version) {
+  const std::string text = zemax_with("TYPE STANDARD\nCURV 0.05\nDISZ 5\nGLAS N-BK7 0 0 1.5168 64.17 0 0 0 0 0 0", "TYPE STANDARD\nCURV 0\nDISZ 5");
+  std::string later = text;
+  later.replace(0, later.find("MODE"), "VERS 231205 2763 20120530 20120530\nDBDT 0 38398 1.000E+10 0.000E+00\nDBDT 1 0 1 0 0 0 0\n\nAUTH \n\nIWDP 0\n");
+  later.insert(later.find("ROPD"), "OMMA 1 1\n");
+  for (std::size_t at = 0; (at = later.find("  HIDE", at)) != std::string::npos; at = later.find("  SLAB", at))
+    later.insert(at, "  FIMP \n\n  SSID 1\n  LUID 1\n  EERA 0\n  IGNR 0\n  OEMA 0.5 0 0 0 0 \"\"\n  MEMA 6.25 0 0 0 1 \"\"\n");
+  later.replace(later.find("FTYP 0 0 1 1 0 0 0"), 18, "FTYP 0 0 1 1 0 0 0 1");
+  const Outcome run = import_text("lens.zmx", later);
+  EXPECT_EQ(run.messages, "");
+  EXPECT_EQ(run.prescription.substr(run.prescription.find("wavelengths_nm")), [&] { const std::string older = import_text("lens.zmx", text).prescription; return older.substr(older.find("wavelengths_nm")); }());
+}
+
+// 2026-11-23: all but IGNR were passed over in silence.
+TEST(ZemaxFile, tells_what_changes_rays_beyond_its_surfaces) {
+  struct Case {
+    const char *line, *by, *expected;
+  };
+  for (const auto& [line, by, expected] : {Case{"GFAC 0 0", "GFAC 1 1", "8:1: error: GFAC: an apodized pupil"}, Case{"FTYP 0 0 1 1 0 0 0", "FTYP 0 0 1 1 0 0 1 1", "16:18: error: FTYP: an image space that is afocal"},
+                                           Case{"SLAB", "IGNR 1", "33:3: error: IGNR: a surface that is ignored, and stands here"},
+                                           Case{"GLAS N-BK7 0 0 1.5", "GLAS N-BK7 4 0 0.01", "48:14: error: GLAS: an offset from the index of a glass"},
+                                           Case{"GLAS N-BK7 0 0 1.5", "GLAS N-BK7 5 0 1.5", "48:14: error: GLAS: what solve 5 is, is not known"},
+                                           Case{"GLAS N-BK7 0 0 1.5", "GLAS N-BK7 3 0 1.5", "48:14: warning: GLAS: a glass that optimisation may substitute is taken as the one that is named"}}) {
+    std::string text = zemax_with("TYPE STANDARD\nCURV 0.05\nDISZ 5\nGLAS N-BK7 0 0 1.5 40", "TYPE STANDARD\nCURV 0\nDISZ 5");
+    EXPECT_EQ(import_text("lens.zmx", text).messages, "");
+    EXPECT_THAT(import_text("lens.zmx", text.replace(text.find(line), std::string(line).size(), by)).messages, HasSubstr(std::string("lens.zmx:") + expected)) << by;
+  }
+}
+
 TEST(ZemaxFile, may_be_in_any_encoding) {
   const std::string text = zemax_with("TYPE STANDARD\nCURV 0.1\nDISZ 5");
   const std::string expected = import_text("lens.zmx", text).prescription;
@@ -101,6 +131,27 @@ TEST(ZemaxShape, of_every_type_that_is_known) {
   }
 }
 
+// OpticStudio's help: "If the extrapolate flag is set to 0, the Zernike terms are ignored outside of the normalization radius."
+// 2026-11-23: PARM 0 1, which is what `zernike` does, was refused, and PARM 0 0 was taken as it without a word.
+TEST(ZemaxShape, of_Zernike_terms_may_end_at_the_radius_of_normalisation) {
+  struct Case {
+    const char *lines, *expected;
+  };
+  const std::string ends = "PARM 0 of SZERNSAG: the terms end at the radius of normalisation, 76.2 mm, and go on here; ";
+  for (const auto& [lines, expected] : {Case{"PARM 0 1", ""}, Case{"PARM 0 1\nDIAM 9", ""}, Case{"", ""}, Case{"DIAM 9", ""}, Case{"PARM 0 0\nDIAM 3", ""}, Case{"PARM 0 0\nDIAM 9\nCLAP 0 3 0", ""},
+                                        Case{"PARM 0 0", "how far the surface reaches is not known"}, Case{"PARM 0 0\nDIAM 0", "how far the surface reaches is not known"},
+                                        Case{"PARM 0 0\nDIAM 4", "the surface reaches to 101.6 mm"}, Case{"PARM 0 0\nDIAM 1\nCLAP 0 4 0", "the surface reaches to 101.6 mm"},
+                                        Case{"PARM 0 0\nDIAM 4\nOBSC 0 1 0", "the surface reaches to 101.6 mm"}}) {
+    std::string text = zemax_with("TYPE SZERNSAG\nCURV 0.02\nDISZ 5\nXDAT 1 11\nXDAT 2 3\nXDAT 13 1.0E-3\n" + std::string(lines), "TYPE STANDARD\nCURV 0\nDISZ 5");
+    const Outcome run = import_text("lens.zmx", text.replace(text.find("UNIT MM"), 7, "UNIT IN"));
+    EXPECT_NE(run.prescription, "") << run.messages;
+    if (*expected == '\0') EXPECT_EQ(run.messages, "") << lines;
+    else EXPECT_THAT(run.messages, HasSubstr("lens.zmx:51:10: warning: " + ends + expected)) << lines;
+  }
+  EXPECT_THAT(import_text("lens.zmx", zemax_with("TYPE FZERNSAG\nCURV 0.02\nDISZ 5\nXDAT 1 11\nXDAT 2 3\nXDAT 13 1.0E-3\nPARM 0 2")).messages, HasSubstr("error: PARM 0 of FZERNSAG is neither 0 nor 1"));
+  EXPECT_EQ(import_text("lens.zmx", zemax_with("TYPE FZERNSAG\nCURV 0.02\nDISZ 5\nXDAT 1 11\nXDAT 2 3\nPARM 0 0")).messages, "");
+}
+
 TEST(ZemaxGlass, is_a_medium_a_model_or_a_mirror) {
   const auto with = [](const std::string& glass) { return import_text("lens.zmx", zemax_with("TYPE STANDARD\nCURV 0.05\nDISZ 5\nGLAS " + glass, "TYPE STANDARD\nCURV 0\nDISZ 5")); };
   EXPECT_THAT(with("N-BK7 0 0 1.5 4.0E+1 0 0 0 0 0 0").prescription, HasSubstr("medium: N-BK7}"));
@@ -113,6 +164,21 @@ TEST(ZemaxGlass, is_a_medium_a_model_or_a_mirror) {
   const Outcome water = with("WATER 0 0 1.5 40");
   EXPECT_THAT(water.prescription, HasSubstr("medium: water}"));
   EXPECT_THAT(water.messages, HasSubstr("warning: 'WATER' is taken as water, whose formula may be of another source"));
+}
+
+// 2026-11-23: a glass of the same name of another maker was taken without a word.
+TEST(ZemaxGlass, is_compared_with_what_the_file_says_of_it) {
+  const auto with = [](const std::string& glass, const std::string& catalogs) {
+    std::string text = zemax_with("TYPE STANDARD\nCURV 0.05\nDISZ 5\nGLAS " + glass, "TYPE STANDARD\nCURV 0\nDISZ 5");
+    return import_text("lens.zmx", text.replace(text.find("GCAT SCHOTT MISC"), 16, "GCAT " + catalogs)).messages;
+  };
+  const std::string hint = "\n  hint: if it is another maker's, --catalog FILE.agf takes it from that catalogue\n";
+  EXPECT_EQ(with("F5 0 0 1.624353 35.938 0 0 0 0 0 0", "CDGM"), "lens.zmx:48:3: warning: 'F5' has nd 1.60342 and Vd 38.03 here, where the file has 1.624353 and 35.938" + hint);
+  EXPECT_EQ(with("F5 0 0 1.6034 40", "SCHOTT"), "lens.zmx:48:3: warning: 'F5' has nd 1.60342 and Vd 38.03 here, where the file has 1.6034 and 40" + hint);
+  EXPECT_EQ(with("F5", "CDGM MISC"), "lens.zmx:48:3: warning: 'F5' is taken from another maker than the catalogues of the file, CDGM MISC\n  hint: --catalog FILE.agf takes it from a catalogue\n");
+  EXPECT_EQ(with("F5 0 0 1.5 40 0 0 0 0 0 0", "CDGM").substr(0, 46), "lens.zmx:48:3: warning: 'F5' is taken from ano");
+  for (const char* same : {"F5", "F5 0 0 1.603420 38.03", "F5 0 0 1.6 38", "F5 0 0 1.5 40", "F5 0 0 1 0", "F5 0 0 0 0"}) EXPECT_EQ(with(same, "CDGM SCHOTT"), "") << same;
+  EXPECT_EQ(with("F5 0 0 1.60342 38.03", "CDGM"), "");
 }
 
 TEST(ZemaxAperture, is_told_in_one_of_four_ways) {
