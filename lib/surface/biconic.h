@@ -11,7 +11,7 @@
 //
 // The hit is the one continuous with that of the quadric of the same vertex curvatures (quadric.h), not of a conic: no conic is near both sections of a
 // cylinder. The quadric reaches out at least as far as the biconic; a ray that meets it beyond the biconic's equator is followed inward from there.
-// not_converged is such a ray only where Q, of a section with K < -1 and another with K > -1, comes below 1 on both sides, and where the steps are too many.
+// Only where Q, of a section with K < -1 and another with K > -1, comes below 1 on both sides of it, such a ray is not_converged.
 //
 // Bound of the second derivative along the line, with |x|, |y|, N, Q and their derivatives bounded on the way:
 //   N''/(1+s) + 2 N' s'/(1+s)^2 + N s''/(1+s)^2 + 2 N s'^2/(1+s)^3,   s' = Q'/(2 s),   s'' = Q''/(2 s) + Q'^2/(4 s^3)       (3)

@@ -30,6 +30,7 @@
 namespace sagitta::surface {
 
 inline constexpr int most_first_crossing_looks = 1000;
+inline constexpr int most_looks_from_an_edge = 10000;  // where slopes are infinite, and steps therefore short
 // Far outside of what a departure is given for, its heights and slopes grow as high powers do; up to here their squares are numbers.
 inline constexpr double largest_departure = 1e100;
 
@@ -103,7 +104,8 @@ Crossing<T> first_crossing(const Surface& surface, const Crossing<T>& start, con
   OnTheWay<T> here{};
   here.t = first;
   bool is_halved = false;  // the step: then the next one is at most twice as long
-  for (int look = 0; look < most_first_crossing_looks; ++look) {
+  const int most_looks = first == T(0) ? most_first_crossing_looks : most_looks_from_an_edge;
+  for (int look = 0; look < most_looks; ++look) {
     const T t = here.t + sense * step.length;
     if (look > 0 && !(sense * (t - here.t) > T(0))) break;  // NaN too
     const Vec3<T> at = origin + t * d;

@@ -83,6 +83,8 @@ TEST(StudyReader, FiguresOfThePaperFindTheirVariants) {
 struct Mistake {
   std::string name, study;
   std::vector<std::string> said;  // each once; lines and columns are counted by hand
+
+  friend void PrintTo(const Mistake& mistake, std::ostream* out) { *out << mistake.name; }
 };
 
 class StudyMistakes : public testing::TestWithParam<Mistake> {};
