@@ -243,8 +243,13 @@ TEST(Contract, HitIsTheOneContinuousWithTheBase) {
       const auto crossing = shape.meet(line.start, line.d);
       const auto f_at = [&](double t) { return start.point.z + t * line.d.z - shape.height(start.point.x + t * line.d.x, start.point.y + t * line.d.y).z; };
       const auto g_at = [&](double t) { return start.point.z + t * line.d.z - shape.base.sag(start.point.x + t * line.d.x, start.point.y + t * line.d.y); };
-      const double f_0 = f_at(0), step = ((f_0 < 0) == (start.along > 0) ? 1 : -1) * 2e-4;
-      double t = 0, lambda = 0;
+      // Of a hit of the base beyond the surface's rim the way begins at the rim, on the side where it leads inward.
+      const auto sense_at = [&](double t) { return (f_at(t) < 0) == (start.along > 0) ? 1 : -1; };
+      double t = 0;
+      for (int k = 1; std::isnan(f_at(t)) && k < 400000; ++k)
+        if (const double beside = (k % 2 == 0 ? 1 : -1) * 1e-4 * k; !std::isnan(f_at(beside)) && sense_at(beside) * beside > 0) t = beside;
+      const double f_0 = f_at(t), step = sense_at(t) * 2e-4;
+      double lambda = 0;
       bool is_hit = false;
       for (int k = 0; k < 200000; ++k) {
         t += step;
